@@ -1,0 +1,25 @@
+//! The vocabulary that every room of Lvis shares: what a path, a step, a batch and a film tile are.
+//!
+//! This crate knows nothing of the network, the GPU or any file format. Conversions to and from
+//! those live with the library that needs them.
+
+mod batch;
+mod camera;
+mod color;
+mod event;
+mod id;
+mod mesh;
+mod session;
+
+pub use batch::{
+    BatchBuilder, BatchError, BatchLimits, Completed, NORMAL_SCALE, PathBatch, PathColumns,
+    PathHeader, PathReader, PathView, VertexColumns, VertexRecord, decode_normal, encode_normal,
+};
+pub use camera::{Camera, CameraError, CameraPose};
+pub use color::Rgb;
+pub use event::{Event, VertexKind};
+pub use id::{ChainId, MaterialId, PathId, StrategyId};
+pub use mesh::{MaterialInfo, SceneFrame, SceneMesh};
+pub use session::{
+    ChainTotals, FailureCount, FilmFrame, FilmTile, Role, Statistics, StrategyStatistics, Welcome,
+};

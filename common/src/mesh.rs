@@ -1,0 +1,67 @@
+//! The scene as a viewer draws it.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use crate::{Camera, Rgb};
+
+/// How the coordinates that travel relate to the coordinates of the scene file.
+///
+/// The daemon works, and sends everything, in a frame whose origin is the middle of the scene's
+/// bounding box and whose unit is a power of two times the file's: `scene = (world - centre) * scale`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SceneFrame {
+    /// The middle of the bounding box, in the file's units.
+    pub centre: DVec3,
+    /// A power of two that makes the largest extent lie in [1024, 2048).
+    pub scale: f64,
+}
+
+impl SceneFrame {
+    /// The point of the file that `scene` stands for.
+    pub fn to_world(self, scene: DVec3) -> DVec3 {
+        scene / self.scale + self.centre
+    }
+
+    /// The point that stands for `world`.
+    pub fn from_world(self, world: DVec3) -> DVec3 {
+        (world - self.centre) * self.scale
+    }
+}
+
+/// What a viewer needs to know of a material.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MaterialInfo {
+    /// The name in the scene file.
+    pub name: String,
+    /// The model, such as `lambert`, `mirror` or `dielectric`.
+    pub model: String,
+    /// A colour to draw it with: its reflectance, or its transmittance for glass.
+    pub color: Rgb,
+    /// Emitted radiance; black where it is no light.
+    pub emission: Rgb,
+    /// True where it lets light through, so that a viewer can draw it translucent.
+    pub transparent: bool,
+}
+
+/// The scene's surfaces as indexed triangles, in scene units (see [`SceneFrame`]).
+///
+/// Curved shapes arrive tessellated; `primitives` names the shape each triangle belongs to, so that
+/// a vertex record's `primitive` can be matched with what is drawn.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SceneMesh {
+    /// Vertex positions.
+    pub positions: Vec<[f32; 3]>,
+    /// Unit normals, one a vertex.
+    pub normals: Vec<[f32; 3]>,
+    /// Three vertex indices a triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// Index into `materials`, one a triangle.
+    pub triangle_materials: Vec<u16>,
+    /// The traced primitive, one a triangle.
+    pub primitives: Vec<u32>,
+    /// The materials.
+    pub materials: Vec<MaterialInfo>,
+    /// The render camera.
+    pub camera: Option<Camera>,
+}
