@@ -374,13 +374,11 @@ impl PathReader<'_> {
         self.record += 1;
         self.vertex += new_count;
 
-        let slot = match self.chains.iter().position(|(known, _)| *known == chain) {
-            Some(slot) => slot,
-            None => {
-                self.chains.push((chain, Vec::new()));
-                self.chains.len() - 1
-            }
-        };
+        let known = self.chains.iter().position(|(known, _)| *known == chain);
+        let slot = known.unwrap_or_else(|| {
+            self.chains.push((chain, Vec::new()));
+            self.chains.len() - 1
+        });
         let path = &mut self.chains[slot].1;
         let eye_start = path.len() - kept_eye;
         path.splice(kept_light..eye_start, new);
@@ -532,9 +530,7 @@ mod tests {
     type Step = (u32, Vec<VertexRecord>, Option<(usize, usize)>);
 
     /// A chain's history: each step keeps a random prefix and suffix and inserts fresh vertices.
-    fn history(
-        steps: &[(u32, usize, usize, usize)],
-    ) -> Vec<Step> {
+    fn history(steps: &[(u32, usize, usize, usize)]) -> Vec<Step> {
         let mut tag = 0;
         let mut paths: [Vec<VertexRecord>; 3] = Default::default();
         let mut out = Vec::new();

@@ -66,7 +66,7 @@ pub struct StrategyStatistics {
 }
 
 /// Totals over all chains since the epoch began.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ChainTotals {
     /// Mutations tried.
     pub steps: u64,
