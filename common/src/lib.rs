@@ -21,5 +21,6 @@ pub use event::{Event, VertexKind};
 pub use id::{ChainId, MaterialId, PathId, StrategyId};
 pub use mesh::{MaterialInfo, SceneFrame, SceneMesh};
 pub use session::{
-    ChainTotals, FailureCount, FilmFrame, FilmTile, Role, Statistics, StrategyStatistics, Welcome,
+    ChainTotals, FailureCount, FilmFrame, FilmTile, Gap, Role, Statistics, StrategyStatistics,
+    Welcome,
 };

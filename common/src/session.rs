@@ -111,6 +111,18 @@ pub struct Statistics {
     pub queued_bytes: u64,
 }
 
+/// Paths that were dropped for one viewer since it was last told, because it or its budget was too
+/// small for them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Gap {
+    /// Path batches.
+    pub batches: u64,
+    /// Records in them.
+    pub paths: u64,
+    /// Bytes of their columns.
+    pub bytes: u64,
+}
+
 /// A block of whole rows of the progressive image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmTile {

@@ -1,0 +1,24 @@
+//! Conversions between wire types and the vocabulary: total one way, checked the other.
+//!
+//! Everything that comes from a peer is hostile until checked here: sizes before anything is
+//! allocated for them, counts, finite numbers, the length of texts.
+
+mod camera;
+mod check;
+mod column;
+mod error;
+mod film;
+mod path;
+mod scene;
+mod session;
+mod statistics;
+
+#[cfg(test)]
+mod tests;
+
+pub use error::WireError;
+pub use scene::{ReceivedScene, SceneAssembler, scene_chunks, unchanged_scene};
+pub use session::{Hello, TracerEvent, ViewerEvent};
+
+/// No message of the protocol is larger: what a receiver should set its decoding limit to.
+pub const MAX_MESSAGE_BYTES: usize = 4 << 20;

@@ -1,0 +1,234 @@
+//! The two directions of a session.
+
+use common::{FilmTile, Gap, PathBatch, Role, Statistics, Welcome};
+
+use super::{WireError, check};
+use crate::{ProtocolVersion, v1};
+
+/// A viewer's introduction, of a compatible version.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Hello {
+    /// The viewer's version.
+    pub version: ProtocolVersion,
+    /// A name for the log, without control characters.
+    pub viewer_name: String,
+    /// The role it would like.
+    pub wanted_role: Role,
+    /// Most bytes of data a second; 0 for the default.
+    pub data_budget: u64,
+}
+
+/// What a viewer says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ViewerEvent {
+    /// Introduces the viewer.
+    Hello(Hello),
+    /// Changes the most bytes of data a second; 0 for the default.
+    SetBudget(u64),
+    /// Leaves, with a reason.
+    Goodbye(String),
+    /// Something of a later version, to be ignored.
+    Unknown,
+}
+
+/// What the tracer says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TracerEvent {
+    /// Answers the hello.
+    Welcome(Welcome),
+    /// Paths.
+    Paths(PathBatch),
+    /// Rows of the progressive image.
+    Film(FilmTile),
+    /// Counts and rates.
+    Statistics(Statistics),
+    /// Data that was dropped.
+    Gap(Gap),
+    /// The snapshot after the welcome is complete.
+    SnapshotEnd,
+    /// The tracer ends the session, with a reason.
+    Goodbye(String),
+    /// Something of a later version, to be ignored.
+    Unknown,
+}
+
+impl From<ViewerEvent> for v1::ViewerMessage {
+    fn from(event: ViewerEvent) -> Self {
+        use v1::viewer_message::Kind;
+        let kind = match event {
+            ViewerEvent::Hello(hello) => Some(Kind::Hello(hello.into())),
+            ViewerEvent::SetBudget(data_budget) => {
+                Some(Kind::SetBudget(v1::SetBudget { data_budget }))
+            }
+            ViewerEvent::Goodbye(reason) => Some(Kind::Goodbye(v1::Goodbye { reason })),
+            ViewerEvent::Unknown => None,
+        };
+        Self { kind }
+    }
+}
+
+impl TryFrom<v1::ViewerMessage> for ViewerEvent {
+    type Error = WireError;
+
+    fn try_from(wire: v1::ViewerMessage) -> Result<Self, WireError> {
+        use v1::viewer_message::Kind;
+        Ok(match wire.kind {
+            Some(Kind::Hello(hello)) => Self::Hello(hello.try_into()?),
+            Some(Kind::SetBudget(budget)) => Self::SetBudget(budget.data_budget),
+            Some(Kind::Goodbye(goodbye)) => Self::Goodbye(reason(goodbye)?),
+            None => Self::Unknown,
+        })
+    }
+}
+
+impl From<&TracerEvent> for v1::TracerMessage {
+    fn from(event: &TracerEvent) -> Self {
+        use v1::tracer_message::Kind;
+        let kind = match event {
+            TracerEvent::Welcome(welcome) => Some(Kind::Welcome(welcome.into())),
+            TracerEvent::Paths(batch) => Some(Kind::PathBatch(batch.into())),
+            TracerEvent::Film(tile) => Some(Kind::FilmTile(tile.into())),
+            TracerEvent::Statistics(statistics) => Some(Kind::Statistics(statistics.into())),
+            TracerEvent::Gap(gap) => Some(Kind::Gap((*gap).into())),
+            TracerEvent::SnapshotEnd => Some(Kind::SnapshotEnd(v1::SnapshotEnd {})),
+            TracerEvent::Goodbye(reason) => {
+                Some(Kind::Goodbye(v1::Goodbye { reason: check::cut(reason, check::MAX_REASON) }))
+            }
+            TracerEvent::Unknown => None,
+        };
+        Self { kind }
+    }
+}
+
+impl TryFrom<v1::TracerMessage> for TracerEvent {
+    type Error = WireError;
+
+    fn try_from(wire: v1::TracerMessage) -> Result<Self, WireError> {
+        use v1::tracer_message::Kind;
+        Ok(match wire.kind {
+            Some(Kind::Welcome(welcome)) => Self::Welcome(welcome.try_into()?),
+            Some(Kind::PathBatch(batch)) => Self::Paths(batch.try_into()?),
+            Some(Kind::FilmTile(tile)) => Self::Film(tile.try_into()?),
+            Some(Kind::Statistics(statistics)) => Self::Statistics(statistics.try_into()?),
+            Some(Kind::Gap(gap)) => Self::Gap(gap.into()),
+            Some(Kind::SnapshotEnd(_)) => Self::SnapshotEnd,
+            Some(Kind::Goodbye(goodbye)) => Self::Goodbye(reason(goodbye)?),
+            None => Self::Unknown,
+        })
+    }
+}
+
+fn reason(goodbye: v1::Goodbye) -> Result<String, WireError> {
+    check::text("goodbye.reason", goodbye.reason, check::MAX_REASON)
+}
+
+impl From<ProtocolVersion> for v1::ProtocolVersion {
+    fn from(version: ProtocolVersion) -> Self {
+        Self { major: version.major, minor: version.minor }
+    }
+}
+
+/// The peer's version, if this program can talk to it.
+fn compatible(wire: Option<v1::ProtocolVersion>) -> Result<ProtocolVersion, WireError> {
+    let v1::ProtocolVersion { major, minor } = check::required("version", wire)?;
+    let (ours, theirs) = (ProtocolVersion::CURRENT, ProtocolVersion { major, minor });
+    if theirs.major == ours.major { Ok(theirs) } else { Err(WireError::Version { ours, theirs }) }
+}
+
+impl From<Role> for v1::Role {
+    fn from(role: Role) -> Self {
+        match role {
+            Role::Observer => Self::Observer,
+            Role::Driver => Self::Driver,
+        }
+    }
+}
+
+/// A role; one of a later version may at least observe.
+fn role(code: i32) -> Role {
+    match v1::Role::try_from(code) {
+        Ok(v1::Role::Driver) => Role::Driver,
+        _ => Role::Observer,
+    }
+}
+
+impl From<Hello> for v1::Hello {
+    fn from(hello: Hello) -> Self {
+        Self {
+            version: Some(hello.version.into()),
+            viewer_name: hello.viewer_name,
+            wanted_role: v1::Role::from(hello.wanted_role).into(),
+            data_budget: hello.data_budget,
+        }
+    }
+}
+
+impl TryFrom<v1::Hello> for Hello {
+    type Error = WireError;
+
+    fn try_from(wire: v1::Hello) -> Result<Self, WireError> {
+        // The version first: what follows may mean something else in another one.
+        let version = compatible(wire.version)?;
+        let mut viewer_name = check::text("hello.viewer_name", wire.viewer_name, check::MAX_NAME)?;
+        viewer_name.retain(|c| !c.is_control());
+        Ok(Self {
+            version,
+            viewer_name,
+            wanted_role: role(wire.wanted_role),
+            data_budget: wire.data_budget,
+        })
+    }
+}
+
+impl From<&Welcome> for v1::Welcome {
+    fn from(welcome: &Welcome) -> Self {
+        Self {
+            version: Some(ProtocolVersion::CURRENT.into()),
+            session: welcome.session,
+            server_version: welcome.server_version.clone(),
+            scene_name: check::cut(&welcome.scene_name, check::MAX_NAME),
+            scene_hash: welcome.scene_hash.clone(),
+            frame: Some(welcome.frame.into()),
+            camera: Some(welcome.camera.into()),
+            strategies: welcome.strategies.clone(),
+            failure_reasons: welcome.failure_reasons.clone(),
+            chains: welcome.chains,
+            max_edges: welcome.max_edges,
+            role: v1::Role::from(welcome.role).into(),
+        }
+    }
+}
+
+impl TryFrom<v1::Welcome> for Welcome {
+    type Error = WireError;
+
+    fn try_from(wire: v1::Welcome) -> Result<Self, WireError> {
+        compatible(wire.version)?;
+        let name = |field, text| check::text(field, text, check::MAX_NAME);
+        Ok(Self {
+            session: wire.session,
+            server_version: name("welcome.server_version", wire.server_version)?,
+            scene_name: name("welcome.scene_name", wire.scene_name)?,
+            scene_hash: name("welcome.scene_hash", wire.scene_hash)?,
+            frame: check::required("welcome.frame", wire.frame)?.try_into()?,
+            camera: check::required("welcome.camera", wire.camera)?.try_into()?,
+            strategies: check::names("welcome.strategies", wire.strategies)?,
+            failure_reasons: check::names("welcome.failure_reasons", wire.failure_reasons)?,
+            chains: wire.chains,
+            max_edges: wire.max_edges,
+            role: role(wire.role),
+        })
+    }
+}
+
+impl From<Gap> for v1::Gap {
+    fn from(Gap { batches, paths, bytes }: Gap) -> Self {
+        Self { batches, paths, bytes }
+    }
+}
+
+impl From<v1::Gap> for Gap {
+    fn from(v1::Gap { batches, paths, bytes }: v1::Gap) -> Self {
+        Self { batches, paths, bytes }
+    }
+}
