@@ -1,1 +1,9 @@
-//! The end-to-end test binary.
+//! Everything that takes more than one crate to test, in one binary.
+//!
+//! `workspace` reads the repository; the first few tests below keep it tidy. To add a test, add a
+//! file with its `#[test]` functions and one line here.
+
+mod citations;
+mod layers;
+mod tidy;
+mod workspace;

@@ -1,0 +1,406 @@
+//! What must never import what, as a table that is checked.
+//!
+//! The checker reads Rust as tokens, so that grouped imports, paths in the middle of an expression
+//! and paths inside macros count, while comments, strings and `#[cfg(test)]` items do not.
+
+use std::str::FromStr as _;
+
+use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
+
+use crate::workspace::{Source, sources};
+
+/// One row: files whose path starts with one of `files`, but with none of `except`, name none of
+/// the paths in `never`.
+struct Rule {
+    files: &'static [&'static str],
+    except: &'static [&'static str],
+    never: &'static [&'static str],
+    because: &'static str,
+}
+
+/// Transport: everything from random numbers to the engine, none of which knows the network.
+const TRANSPORT: &[&str] = &[
+    "tracer-server/src/math",
+    "tracer-server/src/scene",
+    "tracer-server/src/bsdf",
+    "tracer-server/src/path",
+    "tracer-server/src/mutation",
+    "tracer-server/src/chain",
+    "tracer-server/src/integrator",
+    "tracer-server/src/film",
+    "tracer-server/src/engine",
+];
+
+const RULES: &[Rule] = &[
+    // Crates.
+    Rule {
+        files: &["common/src"],
+        except: &[],
+        never: &[
+            "egui", "eframe", "prost", "proto", "std::fs", "std::net", "tokio", "tonic", "wgpu",
+        ],
+        because: "it is vocabulary, and knows no network, GPU or file format",
+    },
+    Rule {
+        files: &["proto/src"],
+        except: &[],
+        never: &["std::fs", "std::net", "tokio", "tracer_server", "viewer_client", "wgpu"],
+        because: "the wire knows the vocabulary and nothing else",
+    },
+    Rule {
+        files: &["shaders/src"],
+        except: &[],
+        never: &["common", "egui", "wgpu"],
+        because: "shader sources and their layouts are data",
+    },
+    Rule {
+        files: &["tracer-server/src"],
+        except: &[],
+        never: &["eframe", "egui", "shaders", "viewer_client", "wgpu"],
+        because: "the daemon has no window",
+    },
+    Rule {
+        files: &["viewer-client/src"],
+        except: &["viewer-client/src/embedded"],
+        never: &["tracer_server"],
+        because: "viewer and daemon meet in the protocol only, but for the embedded daemon",
+    },
+    Rule {
+        files: &["tests/src"],
+        except: &[],
+        never: &["common", "proto", "tracer_server", "viewer_client"],
+        because: "the laboratory measures the others and must not depend on them",
+    },
+    // Layers of the daemon.
+    Rule {
+        files: TRANSPORT,
+        except: &[],
+        never: &["prost", "proto", "tokio", "tonic", "crate::hub", "crate::service", "crate::cli"],
+        because: "transport is mathematics and must run without a network",
+    },
+    Rule {
+        files: &["tracer-server/src/math"],
+        except: &[],
+        never: &["crate::bsdf", "crate::chain", "crate::mutation", "crate::path", "crate::scene"],
+        because: "mathematics knows nothing of light",
+    },
+    Rule {
+        files: &["tracer-server/src/bsdf"],
+        except: &[],
+        never: &["crate::chain", "crate::mutation", "crate::path", "crate::scene"],
+        because: "scattering is local",
+    },
+    Rule {
+        files: &["tracer-server/src/scene"],
+        except: &[],
+        never: &["crate::chain", "crate::film", "crate::mutation", "crate::path"],
+        because: "a scene does not know that it is sampled",
+    },
+    Rule {
+        files: &["tracer-server/src/path"],
+        except: &[],
+        never: &["crate::chain", "crate::engine", "crate::film", "crate::mutation"],
+        because: "a path does not know how it was found",
+    },
+    Rule {
+        files: &["tracer-server/src/mutation"],
+        except: &[],
+        never: &["crate::chain", "crate::engine", "crate::film"],
+        because: "a strategy proposes, the chain disposes",
+    },
+    Rule {
+        files: &["tracer-server/src/chain"],
+        except: &[],
+        never: &["crate::engine", "std::time"],
+        because: "a chain is a state machine, and never waits",
+    },
+    Rule {
+        files: &["tracer-server/src/film"],
+        except: &[],
+        never: &["crate::chain", "crate::mutation", "crate::path", "crate::scene"],
+        because: "a film adds up splats, whoever sends them",
+    },
+    Rule {
+        files: &["tracer-server/src/hub"],
+        except: &[],
+        never: &[
+            "crate::chain",
+            "crate::mutation",
+            "crate::path",
+            "crate::scene",
+            "proto",
+            "tonic",
+        ],
+        because: "the hub moves batches, whatever is in them",
+    },
+    // One owner for each library.
+    Rule {
+        files: &["tracer-server/src"],
+        except: &["tracer-server/src/scene/accel"],
+        never: &["obvhs"],
+        because: "the acceleration structure has one owner",
+    },
+    Rule {
+        files: &["tracer-server/src"],
+        except: &["tracer-server/src/scene/obj"],
+        never: &["tobj"],
+        because: "the reader of OBJ files has one owner",
+    },
+    Rule {
+        files: &["tracer-server/src"],
+        except: &["tracer-server/src/service", "tracer-server/src/daemon"],
+        never: &["proto", "tonic", "tonic_health", "tonic_reflection"],
+        because: "wire types stop at the door",
+    },
+    // Layers of the viewer.
+    Rule {
+        files: &["viewer-client/src"],
+        except: &["viewer-client/src/connection", "viewer-client/src/watch"],
+        never: &["proto", "tonic"],
+        because: "wire types stop at the door",
+    },
+    Rule {
+        files: &["viewer-client/src/store"],
+        except: &[],
+        never: &["eframe", "egui", "wgpu", "crate::app", "crate::gpu", "crate::panel"],
+        because: "what is stored can be asked without a window",
+    },
+    Rule {
+        files: &["viewer-client/src/gpu"],
+        except: &[],
+        never: &["crate::app", "crate::connection", "crate::panel"],
+        because: "drawing takes slices and draws them",
+    },
+    Rule {
+        files: &["viewer-client/src/panel"],
+        except: &["viewer-client/src/panel/viewport"],
+        never: &["wgpu", "crate::app", "crate::connection", "crate::gpu"],
+        because: "panels read the world and return commands",
+    },
+];
+
+/// A path that a file names, with `self` and `super` resolved, and the line where it does.
+type Reference = (String, usize);
+
+/// Complaints about `files`, one a breach.
+fn breaches(rules: &[Rule], files: &[Source]) -> Vec<String> {
+    let mut complaints = Vec::new();
+    for file in files {
+        let applicable: Vec<_> = rules.iter().filter(|rule| rule.covers(&file.path)).collect();
+        if applicable.is_empty() || is_test_file(&file.path) {
+            continue;
+        }
+        for (named, line) in references(file) {
+            for rule in applicable.iter().filter(|rule| rule.forbids(&named)) {
+                let path = &file.path;
+                complaints.push(format!("{path}:{line} names {named}, but {}", rule.because));
+            }
+        }
+    }
+    complaints
+}
+
+impl Rule {
+    fn covers(&self, path: &str) -> bool {
+        let starts = |prefixes: &[&str]| prefixes.iter().any(|prefix| lies_under(path, prefix));
+        starts(self.files) && !starts(self.except)
+    }
+
+    fn forbids(&self, named: &str) -> bool {
+        self.never.iter().any(|path| {
+            named.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
+        })
+    }
+}
+
+/// True when `path` is `prefix`, `prefix.rs` or a file in the folder `prefix`.
+fn lies_under(path: &str, prefix: &str) -> bool {
+    let rest = path.strip_prefix(prefix);
+    rest.is_some_and(|rest| rest.is_empty() || rest == ".rs" || rest.starts_with('/'))
+}
+
+/// Files that a module includes under `#[cfg(test)]`.
+fn is_test_file(path: &str) -> bool {
+    path.ends_with("/laws.rs") || path.ends_with("/tests.rs") || path.contains("/tests/")
+}
+
+/// Every path of at least two segments that the file names outside its tests.
+fn references(file: &Source) -> Vec<Reference> {
+    let tokens = TokenStream::from_str(&file.text)
+        .unwrap_or_else(|error| panic!("{} is not Rust: {error}", file.path));
+    let (_, local) = file.path.split_once("src/").unwrap_or(("", &file.path));
+    let mut module: Vec<String> =
+        local.trim_end_matches(".rs").split('/').map(str::to_owned).collect();
+    if module.last().is_some_and(|last| ["lib", "main", "mod"].contains(&last.as_str())) {
+        module.pop();
+    }
+    let mut found = Vec::new();
+    walk(tokens, &mut module, &mut found);
+    found
+}
+
+fn walk(tokens: TokenStream, module: &mut Vec<String>, found: &mut Vec<Reference>) {
+    let trees: Vec<_> = tokens.into_iter().collect();
+    let mut i = 0;
+    while i < trees.len() {
+        i = match (&trees[i], trees.get(i + 1), trees.get(i + 2)) {
+            (TokenTree::Punct(hash), Some(TokenTree::Group(attribute)), _)
+                if hash.as_char() == '#' && is_cfg_test(attribute) =>
+            {
+                after_item(&trees, i + 2)
+            }
+            (
+                TokenTree::Ident(keyword),
+                Some(TokenTree::Ident(name)),
+                Some(TokenTree::Group(body)),
+            ) if keyword == "mod" => {
+                module.push(name.to_string());
+                walk(body.stream(), module, found);
+                module.pop();
+                i + 3
+            }
+            (TokenTree::Ident(_), ..) => follow(&trees, i, Vec::new(), module, found),
+            (TokenTree::Group(group), ..) => {
+                walk(group.stream(), module, found);
+                i + 1
+            }
+            _ => i + 1,
+        };
+    }
+}
+
+/// Reads the path that starts at `trees[i]` after `prefix`, expands braces of a `use`, and returns
+/// the index behind it.
+fn follow(
+    trees: &[TokenTree],
+    mut i: usize,
+    prefix: Vec<String>,
+    module: &[String],
+    found: &mut Vec<Reference>,
+) -> usize {
+    let mut segments = prefix;
+    let line = trees[i].span().start().line;
+    while let Some(TokenTree::Ident(segment)) = trees.get(i) {
+        segments.push(segment.to_string());
+        i += 1;
+        if !is_path_separator(trees, i) {
+            break;
+        }
+        i += 2;
+    }
+    if let Some(TokenTree::Group(group)) = trees.get(i)
+        && group.delimiter() == Delimiter::Brace
+        && is_path_separator(trees, i.wrapping_sub(2))
+    {
+        for branch in branches(group) {
+            follow(&branch, 0, segments.clone(), module, found);
+        }
+        return i + 1;
+    }
+    if segments.len() > 1 {
+        found.push((resolve(&segments, module), line));
+    }
+    i
+}
+
+/// The parts of a brace group between its commas, without empty ones.
+fn branches(group: &Group) -> Vec<Vec<TokenTree>> {
+    let trees: Vec<_> = group.stream().into_iter().collect();
+    let is_comma = |tree: &TokenTree| matches!(tree, TokenTree::Punct(p) if p.as_char() == ',');
+    let parts = trees.split(is_comma).map(<[TokenTree]>::to_vec);
+    parts.filter(|part| !part.is_empty()).collect()
+}
+
+fn is_path_separator(trees: &[TokenTree], i: usize) -> bool {
+    let is_colon = |tree: Option<&TokenTree>| matches!(tree, Some(TokenTree::Punct(punct)) if punct.as_char() == ':');
+    is_colon(trees.get(i)) && is_colon(trees.get(i.wrapping_add(1)))
+}
+
+fn is_cfg_test(attribute: &Group) -> bool {
+    let text: String = attribute.stream().to_string().split_whitespace().collect();
+    text == "cfg(test)" || text.starts_with("cfg(all(test")
+}
+
+/// The index behind the item that starts at `i`: behind its first braces or semicolon.
+fn after_item(trees: &[TokenTree], i: usize) -> usize {
+    let ends = |tree: &TokenTree| match tree {
+        TokenTree::Group(group) => group.delimiter() == Delimiter::Brace,
+        TokenTree::Punct(punct) => punct.as_char() == ';',
+        _ => false,
+    };
+    let length = trees[i.min(trees.len())..].iter().position(ends);
+    length.map_or(trees.len(), |length| i + length + 1)
+}
+
+/// Turns `self::` and `super::` into `crate::`, seen from `module`.
+fn resolve(segments: &[String], module: &[String]) -> String {
+    let ups = segments.iter().take_while(|segment| *segment == "super").count();
+    let here = usize::from(segments[0] == "self");
+    if ups + here == 0 {
+        return segments.join("::");
+    }
+    let kept = module.len().saturating_sub(ups);
+    let absolute = module[..kept].iter().chain(&segments[ups + here..]);
+    std::iter::once("crate").chain(absolute.map(String::as_str)).collect::<Vec<_>>().join("::")
+}
+
+#[test]
+fn no_layer_names_what_it_must_not_know() {
+    let complaints = breaches(RULES, &sources(&["rs"]));
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+/// The complaints about a file at `path` with this text.
+fn planted(path: &str, text: &str) -> Vec<String> {
+    breaches(RULES, &[Source::made_up(path, text)])
+}
+
+#[test]
+fn a_planted_breach_is_found_however_it_is_written() {
+    let bsdf = "tracer-server/src/bsdf/lambert.rs";
+    for text in [
+        "use crate::path::Path;",
+        "use crate::{math::Frame, path};",
+        "use crate::{math, path::{Path}};",
+        "use super::super::path::Path;",
+        "mod inner { use super::super::super::path::Path; }",
+        "fn f(x: &crate::path::Path) {}",
+        "fn f() { vec![crate::path::Path::new()]; }",
+        "type P = Option<crate::path::Path>;",
+    ] {
+        let found = planted(bsdf, &format!("//! A lobe.\n{text}\n"));
+        assert_eq!(found.len(), 1, "{text} gives {found:?}");
+        assert!(found[0].starts_with(&format!("{bsdf}:2 names crate::path")), "{}", found[0]);
+    }
+    let hub = planted("tracer-server/src/hub/lane.rs", "async fn f() -> tonic::Status { g() }");
+    assert_eq!(hub.len(), 2, "both rows that forbid it complain: {hub:?}");
+}
+
+#[test]
+fn what_is_no_breach_is_let_pass() {
+    let bsdf = "tracer-server/src/bsdf/lambert.rs";
+    for text in [
+        "// use crate::path::Path;",
+        "/// See [`crate::path::Path`].\nfn f() {}",
+        "const HELP: &str = \"crate::path::Path\";",
+        "use crate::pathology::Finding;",
+        "use super::Sample;",
+        "#[cfg(test)]\nmod tests { use crate::path::Path; }",
+        "#[cfg(test)]\nuse crate::path::Path;",
+        "fn f(path: &str, scene: u32) -> bool { path.is_empty() }",
+    ] {
+        let found = planted(bsdf, text);
+        assert!(found.is_empty(), "{text} gives {found:?}");
+    }
+    let owner = planted("tracer-server/src/scene/accel.rs", "use obvhs::cwbvh::CwBvh;");
+    assert!(owner.is_empty(), "the owner of a library may name it: {owner:?}");
+    let law = planted("tracer-server/src/bsdf/laws.rs", "use crate::path::Path;");
+    assert!(law.is_empty(), "laws may use anything: {law:?}");
+}
+
+#[test]
+fn code_behind_a_test_module_is_still_read() {
+    let text = "#[cfg(test)]\nmod tests { fn g() {} }\nuse crate::path::Path;";
+    let found = planted("tracer-server/src/bsdf/lambert.rs", text);
+    assert_eq!(found.len(), 1, "{found:?}");
+}
