@@ -24,8 +24,7 @@ impl SceneFrame {
     }
 
     /// The point that stands for `world`.
-    #[expect(clippy::wrong_self_convention, reason = "the converse of `to_world`")]
-    pub fn from_world(self, world: DVec3) -> DVec3 {
+    pub fn to_scene(self, world: DVec3) -> DVec3 {
         (world - self.centre) * self.scale
     }
 }

@@ -1,3 +1,11 @@
 //! The tracer: scenes, paths, mutations, chains, and the daemon that streams them.
 
+pub mod bsdf;
+pub mod chain;
+pub mod film;
+pub mod integrator;
+pub mod math;
+pub mod mutation;
+pub mod parallel;
+pub mod path;
 pub mod scene;

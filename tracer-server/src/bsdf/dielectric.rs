@@ -1,0 +1,98 @@
+//! A smooth boundary between two transparent media.
+
+use common::{Event, Rgb};
+use glam::DVec3;
+
+use super::{Scatter, Scattering, reflect};
+use crate::math::Rng;
+
+/// Reflects and refracts by Fresnel's equations; absorbs only through its tints.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dielectric {
+    /// Index of refraction behind the surface over the one in front of it.
+    pub eta: f64,
+    /// Tint of reflected light, each channel in [0, 1].
+    pub reflectance: Rgb,
+    /// Tint of refracted light, each channel in [0, 1].
+    pub transmittance: Rgb,
+}
+
+impl Dielectric {
+    /// Index of refraction beyond the surface over the one on the side of `w`.
+    fn relative_eta(&self, n: DVec3, w: DVec3) -> f64 {
+        if n.dot(w) > 0.0 { self.eta } else { 1.0 / self.eta }
+    }
+
+    /// The direction of refraction of `w`, or `None` at total internal reflection.
+    fn refract(&self, n: DVec3, w: DVec3) -> Option<DVec3> {
+        let eta = self.relative_eta(n, w);
+        let facing = if n.dot(w) > 0.0 { n } else { -n };
+        let cos_i = facing.dot(w);
+        let cos2_t = 1.0 - (1.0 - cos_i * cos_i) / (eta * eta);
+        (cos2_t > 0.0).then(|| ((cos_i / eta - cos2_t.sqrt()) * facing - w / eta).normalize())
+    }
+}
+
+/// Fresnel reflectance of unpolarised light that arrives at `cos_i > 0` on a boundary with relative
+/// index `eta` (beyond over this side). One at grazing incidence and at total internal reflection.
+pub fn fresnel(cos_i: f64, eta: f64) -> f64 {
+    if eta == 1.0 {
+        return 0.0;
+    }
+    let cos_i = cos_i.min(1.0);
+    let cos2_t = 1.0 - (1.0 - cos_i * cos_i) / (eta * eta);
+    if !(cos2_t > 0.0) || !(cos_i > 0.0) {
+        return 1.0;
+    }
+    let cos_t = cos2_t.sqrt();
+    let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+    0.5 * (parallel * parallel + perpendicular * perpendicular)
+}
+
+impl Scatter for Dielectric {
+    fn sample(&self, n: DVec3, w: DVec3, rng: &mut Rng) -> Option<(DVec3, Event)> {
+        let reflected = fresnel(n.dot(w).abs(), self.relative_eta(n, w));
+        let event = if rng.uniform() < reflected { Event::Reflect } else { Event::Transmit };
+        self.follow(n, w, event).map(|direction| (direction, event))
+    }
+
+    fn evaluate(&self, n: DVec3, w_l: DVec3, w_e: DVec3, event: Event) -> Option<Scattering> {
+        let (cos_l, cos_e) = (n.dot(w_l), n.dot(w_e));
+        let reflected = fresnel(cos_l.abs(), self.relative_eta(n, w_l));
+        let (color, probability, eye_weight) = match event {
+            Event::Reflect if cos_l * cos_e > 0.0 => (self.reflectance, reflected, 1.0),
+            Event::Transmit if cos_l * cos_e < 0.0 => {
+                // Radiance is squeezed into the narrower cone of the denser medium: the eye side
+                // carries (eta_eye / eta_light)^2 [Veach 1997, section 5.2].
+                let eta = self.relative_eta(n, w_l);
+                (self.transmittance, 1.0 - reflected, eta * eta)
+            }
+            _ => return None,
+        };
+        (probability > 0.0 && !color.is_black()).then_some(Scattering {
+            color,
+            connection: 0.0,
+            light_weight: 1.0,
+            eye_weight,
+            light_pdf: probability,
+            eye_pdf: probability,
+        })
+    }
+
+    fn follow(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
+        match event {
+            Event::Reflect if !self.reflectance.is_black() => Some(reflect(n, w)),
+            Event::Transmit if !self.transmittance.is_black() => self.refract(n, w),
+            _ => None,
+        }
+    }
+
+    fn connectable(&self) -> Option<Event> {
+        None
+    }
+
+    fn albedo(&self) -> f64 {
+        self.reflectance.max_channel().max(self.transmittance.max_channel())
+    }
+}

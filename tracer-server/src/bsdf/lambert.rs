@@ -1,0 +1,56 @@
+//! Ideal diffuse reflection on both sides of a surface.
+
+use std::f64::consts::FRAC_1_PI;
+
+use common::{Event, Rgb};
+use glam::DVec3;
+
+use super::{Scatter, Scattering};
+use crate::math::{Frame, Rng, cosine_hemisphere};
+
+/// Reflects the same radiance in all directions: `f = reflectance / pi`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lambert {
+    /// Albedo, each channel in [0, 1].
+    pub reflectance: Rgb,
+}
+
+impl Scatter for Lambert {
+    #[inline]
+    fn sample(&self, n: DVec3, w: DVec3, rng: &mut Rng) -> Option<(DVec3, Event)> {
+        if self.reflectance.is_black() {
+            return None;
+        }
+        let facing = if n.dot(w) > 0.0 { n } else { -n };
+        let local = cosine_hemisphere(rng.uniform(), rng.uniform());
+        Some((Frame::new(facing).to_world(local), Event::Diffuse))
+    }
+
+    #[inline]
+    fn evaluate(&self, n: DVec3, w_l: DVec3, w_e: DVec3, event: Event) -> Option<Scattering> {
+        let (cos_l, cos_e) = (n.dot(w_l), n.dot(w_e));
+        let lit = cos_l * cos_e > 0.0 && event == Event::Diffuse && !self.reflectance.is_black();
+        // The weights are the albedo in closed form: f cos / pdf would be 0/0 at grazing angles.
+        lit.then(|| Scattering {
+            color: self.reflectance,
+            connection: FRAC_1_PI,
+            light_weight: 1.0,
+            eye_weight: 1.0,
+            light_pdf: cos_e.abs() * FRAC_1_PI,
+            eye_pdf: cos_l.abs() * FRAC_1_PI,
+        })
+    }
+
+    fn follow(&self, _: DVec3, _: DVec3, _: Event) -> Option<DVec3> {
+        None
+    }
+
+    #[inline]
+    fn connectable(&self) -> Option<Event> {
+        Some(Event::Diffuse)
+    }
+
+    fn albedo(&self) -> f64 {
+        self.reflectance.max_channel()
+    }
+}

@@ -1,0 +1,120 @@
+//! How light scatters at a point of a surface. Local: knows no scene and no path.
+//!
+//! To add a model: write its file with an `impl Scatter`, add a variant to [`Bsdf`] and one arm to
+//! `model!`; the laws in `laws.rs` then hold it to account.
+
+mod dielectric;
+mod lambert;
+mod mirror;
+
+use common::{Event, Rgb};
+use glam::DVec3;
+
+use crate::math::Rng;
+pub use dielectric::Dielectric;
+pub use lambert::Lambert;
+pub use mirror::Mirror;
+
+/// Everything a path needs of one scattering vertex, given both neighbours and the event.
+///
+/// One colour and a few scalars: the vertex's contribution to the path is `color` times a scalar
+/// that depends only on how the vertex was made. With `f` the scattering function and `w_l`, `w_e`
+/// the directions to the neighbours on the light and on the eye side:
+///
+/// - `color * connection = f(w_l, w_e)` (zero for a Dirac event),
+/// - `color * light_weight = f |cos w_e| / light_pdf`: made by a walk from the light,
+/// - `color * eye_weight = f |cos w_l| / eye_pdf`: made by a walk from the eye.
+///
+/// For a Dirac event the pdfs are the event's probability and the quotients are taken with the
+/// Dirac delta cancelled; only the eye side carries the squared ratio of refractive indices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scattering {
+    /// Reflectance or transmittance.
+    pub color: Rgb,
+    /// Scalar for an explicit connection, in 1/sr.
+    pub connection: f64,
+    /// Scalar for a walk from the light.
+    pub light_weight: f64,
+    /// Scalar for a walk from the eye.
+    pub eye_weight: f64,
+    /// Density of `w_e` given `w_l`: per solid angle, or a probability for a Dirac event.
+    pub light_pdf: f64,
+    /// Density of `w_l` given `w_e`: per solid angle, or a probability for a Dirac event.
+    pub eye_pdf: f64,
+}
+
+/// What a scattering model must provide. All directions are unit vectors that point away from the
+/// surface; `n` is the unit geometric normal on the front side.
+pub trait Scatter {
+    /// Draws an event and the direction the walk goes on, given the direction `w` it came from.
+    /// `None` when the walk is absorbed.
+    fn sample(&self, n: DVec3, w: DVec3, rng: &mut Rng) -> Option<(DVec3, Event)>;
+
+    /// All values of the vertex; `None` where they are zero.
+    fn evaluate(&self, n: DVec3, w_l: DVec3, w_e: DVec3, event: Event) -> Option<Scattering>;
+
+    /// The only direction in which the Dirac `event` continues from `w`; `None` when it cannot
+    /// happen there (total internal reflection, or no such lobe).
+    fn follow(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3>;
+
+    /// The event with which a vertex can be joined to any other by an explicit connection.
+    fn connectable(&self) -> Option<Event>;
+
+    /// Upper bound of the reflectance, for Russian roulette.
+    fn albedo(&self) -> f64;
+}
+
+/// A scattering model with its parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bsdf {
+    /// Ideal diffuse.
+    Lambert(Lambert),
+    /// Ideal mirror.
+    Mirror(Mirror),
+    /// Smooth boundary of transparent media.
+    Dielectric(Dielectric),
+}
+
+/// Calls a method of the model behind the variant: the only match on [`Bsdf`].
+macro_rules! model {
+    ($bsdf:expr, $model:ident => $call:expr) => {
+        match $bsdf {
+            Bsdf::Lambert($model) => $call,
+            Bsdf::Mirror($model) => $call,
+            Bsdf::Dielectric($model) => $call,
+        }
+    };
+}
+
+impl Scatter for Bsdf {
+    #[inline]
+    fn sample(&self, n: DVec3, w: DVec3, rng: &mut Rng) -> Option<(DVec3, Event)> {
+        model!(self, m => m.sample(n, w, rng))
+    }
+
+    #[inline]
+    fn evaluate(&self, n: DVec3, w_l: DVec3, w_e: DVec3, event: Event) -> Option<Scattering> {
+        model!(self, m => m.evaluate(n, w_l, w_e, event))
+    }
+
+    #[inline]
+    fn follow(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
+        model!(self, m => m.follow(n, w, event))
+    }
+
+    #[inline]
+    fn connectable(&self) -> Option<Event> {
+        model!(self, m => m.connectable())
+    }
+
+    #[inline]
+    fn albedo(&self) -> f64 {
+        model!(self, m => m.albedo())
+    }
+}
+
+/// Mirror image of `w` in the plane with normal `n`.
+#[inline]
+pub(crate) fn reflect(n: DVec3, w: DVec3) -> DVec3 {
+    2.0 * n.dot(w) * n - w
+}

@@ -1,0 +1,201 @@
+//! Many chains that make one image.
+
+use std::thread;
+
+use common::{ChainId, PathBatch};
+
+use super::{Bootstrap, BootstrapSettings, Chain, ChainStatistics, Watch};
+use crate::film::Film;
+use crate::mutation::{Mixture, StrategyWeights};
+use crate::parallel;
+use crate::scene::{Scene, Tracer};
+
+/// Films that chains are spread over.
+///
+/// Chain `c` splats into lane `c mod LANES` only and a lane is
+/// worked on by one thread at a time, so the image does not depend on the number of threads; no
+/// more threads than this have work.
+pub const LANES: usize = 8;
+
+/// How chains are run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnsembleSettings {
+    /// Number of the run; the same number gives the same image.
+    pub seed: u64,
+    /// Number of chains.
+    pub chains: u32,
+    /// Worker threads; the image does not depend on it.
+    pub threads: usize,
+    /// How often each strategy is chosen.
+    pub weights: StrategyWeights,
+    /// Samples drawn at most for the normalisation and the seeds.
+    pub bootstrap_samples: u64,
+}
+
+impl Default for EnsembleSettings {
+    fn default() -> Self {
+        Self {
+            seed: 0,
+            chains: 128,
+            threads: thread::available_parallelism().map_or(1, Into::into),
+            weights: StrategyWeights::default(),
+            bootstrap_samples: 1 << 19,
+        }
+    }
+}
+
+/// Chains with their common film.
+#[derive(Debug)]
+pub struct Ensemble {
+    mixture: Mixture,
+    bootstrap: Bootstrap,
+    lanes: Vec<Lane>,
+    threads: usize,
+    steps: u64,
+}
+
+#[derive(Debug)]
+struct Lane {
+    film: Film,
+    chains: Vec<Chain>,
+    rays: u64,
+    shadow_rays: u64,
+}
+
+impl Ensemble {
+    /// Seeds the chains. Without light on the film there are no chains and the image stays black.
+    /// `on_progress` hears the number of samples drawn for the seeds.
+    pub fn new(scene: &Scene, settings: &EnsembleSettings, on_progress: impl FnMut(u64)) -> Self {
+        let bootstrap_settings = BootstrapSettings {
+            seed: settings.seed,
+            threads: settings.threads,
+            min_samples: (settings.bootstrap_samples / 8).max(1),
+            max_samples: settings.bootstrap_samples,
+            relative_error: 0.003,
+            chains: settings.chains,
+        };
+        let bootstrap = Bootstrap::new(scene, &bootstrap_settings, on_progress);
+        let camera = scene.camera();
+        let mixture =
+            Mixture::new(&settings.weights, camera, bootstrap.energy(), scene.max_edges());
+        let mut lanes: Vec<Lane> = (0..LANES)
+            .map(|_| Lane {
+                film: Film::new(camera.width, camera.height),
+                chains: Vec::new(),
+                rays: 0,
+                shadow_rays: 0,
+            })
+            .collect();
+        let seeds = bootstrap.seeds(scene, settings.chains);
+        for (id, seed) in (0_u32..).zip(seeds) {
+            let chain = Chain::new(ChainId(id), settings.seed, seed, &mixture);
+            lanes[id as usize % LANES].chains.push(chain);
+        }
+        Self { mixture, bootstrap, lanes, threads: settings.threads.max(1), steps: 0 }
+    }
+
+    /// The pool behind the seeds.
+    pub fn bootstrap(&self) -> &Bootstrap {
+        &self.bootstrap
+    }
+
+    /// The strategies.
+    pub fn mixture(&self) -> &Mixture {
+        &self.mixture
+    }
+
+    /// Number of chains.
+    pub fn chain_count(&self) -> usize {
+        self.lanes.iter().map(|lane| lane.chains.len()).sum()
+    }
+
+    /// All chains, in the order of the lanes.
+    pub fn chains(&self) -> impl Iterator<Item = &Chain> {
+        self.lanes.iter().flat_map(|lane| &lane.chains)
+    }
+
+    /// Steps taken by all chains together.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Every chain takes `steps` steps. With a `window`, the states that each chain passes through
+    /// in its first `window` steps are returned, in the order of the lanes.
+    pub fn advance(&mut self, scene: &Scene, steps: u64, window: Option<u64>) -> Vec<PathBatch> {
+        let mixture = &self.mixture;
+        let mut batches: Vec<Vec<PathBatch>> = self.lanes.iter().map(|_| Vec::new()).collect();
+        parallel::for_each(
+            self.threads.min(LANES),
+            self.lanes.iter_mut().zip(batches.iter_mut()),
+            || (),
+            |(), (lane, out)| *out = lane.advance(scene, mixture, steps, window),
+        );
+        self.steps += steps * self.chain_count() as u64;
+        batches.into_iter().flatten().collect()
+    }
+
+    /// Sum of all lanes: `sum_p lum = steps`.
+    pub fn splats(&self) -> Film {
+        let mut sum = self.lanes[0].film.clone();
+        self.lanes[1..].iter().for_each(|lane| sum.add(&lane.film));
+        sum
+    }
+
+    /// The image in radiance of the file's units; black without steps.
+    pub fn image(&self, scene: &Scene) -> Film {
+        let mut image = self.splats();
+        let b = self.bootstrap.normalization() * scene.radiance_scale();
+        let pixels = scene.camera().pixel_count() as f64;
+        let factor = if self.steps == 0 { 0.0 } else { b * pixels / self.steps as f64 };
+        image.scale(factor);
+        image
+    }
+
+    /// Mean luminance of the image and its standard error, in the file's units.
+    pub fn normalization(&self, scene: &Scene) -> (f64, f64) {
+        let scale = scene.radiance_scale();
+        (self.bootstrap.normalization() * scale, self.bootstrap.normalization_error() * scale)
+    }
+
+    /// Counts of all chains together.
+    pub fn statistics(&self) -> ChainStatistics {
+        let mut sum = ChainStatistics::new(self.mixture.len());
+        for lane in &self.lanes {
+            lane.chains.iter().for_each(|chain| sum.add(chain.statistics()));
+            sum.rays += lane.rays;
+            sum.shadow_rays += lane.shadow_rays;
+        }
+        sum
+    }
+}
+
+impl Lane {
+    fn advance(
+        &mut self,
+        scene: &Scene,
+        mixture: &Mixture,
+        steps: u64,
+        window: Option<u64>,
+    ) -> Vec<PathBatch> {
+        let scene = Tracer::new(scene);
+        let mut watch = window.map(|window| Watch::new(window, steps));
+        for chain in &mut self.chains {
+            let mut left = steps;
+            if let Some(watch) = &mut watch {
+                watch.begin(chain);
+                while watch.is_open() && left > 0 {
+                    let step = chain.step(&scene, mixture, &mut self.film);
+                    watch.see(chain, &step);
+                    left -= 1;
+                }
+            }
+            for _ in 0..left {
+                chain.step(&scene, mixture, &mut self.film);
+            }
+            chain.flush(&mut self.film);
+        }
+        self.rays += scene.rays();
+        self.shadow_rays += scene.shadow_rays();
+        watch.map_or_else(Vec::new, Watch::finish)
+    }
+}

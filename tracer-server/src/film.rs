@@ -1,0 +1,69 @@
+//! Where splats are added up.
+
+use common::Rgb;
+
+/// A grid of sums in double precision. Nothing is clamped, filtered or rescaled here.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    width: u32,
+    height: u32,
+    pixels: Vec<Rgb>,
+}
+
+impl Film {
+    /// A black film.
+    pub fn new(width: u32, height: u32) -> Self {
+        Self { width, height, pixels: vec![Rgb::BLACK; width as usize * height as usize] }
+    }
+
+    /// Width in pixels.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Height in pixels.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The pixels, row by row from the top left.
+    pub fn pixels(&self) -> &[Rgb] {
+        &self.pixels
+    }
+
+    /// Adds `color` to the pixel with index `pixel`.
+    #[inline]
+    pub fn splat(&mut self, pixel: usize, color: Rgb) {
+        self.pixels[pixel] += color;
+    }
+
+    /// The rows from the top, for workers that own one each.
+    pub fn rows_mut(&mut self) -> std::slice::ChunksMut<'_, Rgb> {
+        self.pixels.chunks_mut(self.width as usize)
+    }
+
+    /// Adds another film of the same size, pixel by pixel.
+    pub fn add(&mut self, other: &Self) {
+        for (sum, &pixel) in self.pixels.iter_mut().zip(&other.pixels) {
+            *sum += pixel;
+        }
+    }
+
+    /// Multiplies every pixel.
+    pub fn scale(&mut self, factor: f64) {
+        for pixel in &mut self.pixels {
+            *pixel = *pixel * factor;
+        }
+    }
+
+    /// Sum of the pixels' luminances.
+    pub fn total_luminance(&self) -> f64 {
+        self.pixels.iter().map(|p| p.luminance()).sum()
+    }
+
+    /// Mean colour.
+    pub fn mean(&self) -> Rgb {
+        let sum = self.pixels.iter().fold(Rgb::BLACK, |sum, &p| sum + p);
+        sum / self.pixels.len() as f64
+    }
+}

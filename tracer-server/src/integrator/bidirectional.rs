@@ -1,0 +1,93 @@
+//! A bidirectional path tracer: the images of the samples that also seed the chains.
+
+use glam::DVec2;
+
+use crate::chain::LANES;
+use crate::film::Film;
+use crate::math::{Rng, Stream};
+use crate::parallel;
+use crate::path::BidirectionalSampler;
+use crate::scene::{Scene, Tracer};
+
+/// Renders by bidirectional path tracing, pass by pass.
+#[derive(Debug)]
+pub struct BidirectionalTracer {
+    lanes: Vec<Film>,
+    seed: u64,
+    samples: u64,
+    rays: (u64, u64),
+}
+
+impl BidirectionalTracer {
+    /// An empty image of `scene`.
+    pub fn new(scene: &Scene, seed: u64) -> Self {
+        let camera = scene.camera();
+        Self {
+            lanes: vec![Film::new(camera.width, camera.height); LANES],
+            seed,
+            samples: 0,
+            rays: (0, 0),
+        }
+    }
+
+    /// Draws `samples` more samples through every pixel, on `threads` threads. A row of the film
+    /// belongs to a lane, so the image does not depend on the number of threads.
+    pub fn advance(&mut self, scene: &Scene, samples: u64, threads: usize) {
+        let (first, seed) = (self.samples, self.seed);
+        let workers = parallel::for_each(
+            threads.min(LANES),
+            self.lanes.iter_mut().enumerate(),
+            || Tracer::new(scene),
+            |scene, (number, lane)| {
+                for pass in first..first + samples {
+                    render_lane(scene, lane, number, (seed, pass));
+                }
+            },
+        );
+        for worker in workers {
+            self.rays.0 += worker.rays();
+            self.rays.1 += worker.shadow_rays();
+        }
+        self.samples += samples;
+    }
+
+    /// Samples through every pixel so far.
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// Closest-hit rays and shadow rays so far.
+    pub fn rays(&self) -> (u64, u64) {
+        self.rays
+    }
+
+    /// The image in radiance of the file's units.
+    pub fn image(&self, scene: &Scene) -> Film {
+        let mut image = self.lanes[0].clone();
+        self.lanes[1..].iter().for_each(|lane| image.add(lane));
+        image.scale(scene.radiance_scale() / self.samples.max(1) as f64);
+        image
+    }
+}
+
+/// One pass over the rows of a lane: rows `lane`, `lane + LANES`, ...
+fn render_lane(scene: &Tracer<'_>, film: &mut Film, lane: usize, (seed, pass): (u64, u64)) {
+    let camera = scene.camera();
+    let (width, height) = (u64::from(camera.width), u64::from(camera.height));
+    let mut sampler = BidirectionalSampler::new(scene);
+    for y in (lane as u64..height).step_by(LANES) {
+        let mut rng = Rng::new(seed, Stream::Bidirectional, pass * height + y);
+        for x in 0..width {
+            let film_point = DVec2::new(
+                (x as f64 + rng.uniform()) / width as f64,
+                (y as f64 + rng.uniform()) / height as f64,
+            );
+            sampler.sample(scene, film_point, &mut rng, |path, weight| {
+                let splat = path.unit_color() * weight;
+                if splat.is_physical() {
+                    film.splat(path.pixel(), splat);
+                }
+            });
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Random streams that belong to what they feed, never to a thread.
+
+use rand_core::{Rng as _, SeedableRng as _};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// What a random stream is for. Streams of different purposes never overlap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u64)]
+pub enum Stream {
+    /// One bidirectional sample of the pool that seeds the chains.
+    Bootstrap = 1,
+    /// One Markov chain.
+    Chain = 2,
+    /// The choice of the seeds among the pool.
+    Resampling = 3,
+    /// One pixel of the path tracer.
+    PathTracer = 4,
+    /// One block of samples of the bidirectional path tracer.
+    Bidirectional = 5,
+    /// Tests and benchmarks.
+    Laboratory = 6,
+}
+
+/// A random stream: xoshiro256++ keyed by a hash of (seed, purpose, index).
+///
+/// The key is hashed because neighbouring seeds of a simple mixer can give one and the same
+/// sequence, shifted by a step.
+#[derive(Clone, Debug)]
+pub struct Rng(Xoshiro256PlusPlus);
+
+impl Rng {
+    /// The stream number `index` for a purpose.
+    pub fn new(seed: u64, stream: Stream, index: u64) -> Self {
+        let mut key = [0; 24];
+        key[..8].copy_from_slice(&seed.to_le_bytes());
+        key[8..16].copy_from_slice(&(stream as u64).to_le_bytes());
+        key[16..].copy_from_slice(&index.to_le_bytes());
+        Self(Xoshiro256PlusPlus::from_seed(*blake3::hash(&key).as_bytes()))
+    }
+
+    /// A number in [0, 1) with 53 random bits.
+    #[inline]
+    pub fn uniform(&mut self) -> f64 {
+        const SCALE: f64 = 1.0 / (1_u64 << 53) as f64;
+        (self.0.next_u64() >> 11) as f64 * SCALE
+    }
+
+    /// An integer in `0..n`; zero for `n == 0`.
+    #[inline]
+    pub fn below(&mut self, n: usize) -> usize {
+        // The product rounds to `n` only for n near 2^53.
+        ((self.uniform() * n as f64) as usize).min(n.saturating_sub(1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbouring_keys_are_unrelated() {
+        // A product of two centred uniforms has standard deviation 1/12.
+        const N: usize = 20_000;
+        for lag in 0..8_usize {
+            let mut a = Rng::new(1, Stream::Chain, 0);
+            let mut b = Rng::new(1, Stream::Chain, 1);
+            for _ in 0..lag {
+                b.uniform();
+            }
+            let sum: f64 = (0..N).map(|_| (a.uniform() - 0.5) * (b.uniform() - 0.5)).sum();
+            let z = sum / (N as f64).sqrt() * 12.0;
+            assert!(z.abs() < 5.5, "lag {lag}: correlation at z = {z}");
+        }
+    }
+
+    #[test]
+    fn keys_give_distinct_streams() {
+        let first = |seed, stream, index| Rng::new(seed, stream, index).0.next_u64();
+        let mut outputs: Vec<u64> =
+            (0..10_000).map(|index| first(7, Stream::Bootstrap, index)).collect();
+        outputs.push(first(8, Stream::Bootstrap, 0));
+        outputs.push(first(7, Stream::Chain, 0));
+        outputs.sort_unstable();
+        outputs.dedup();
+        assert_eq!(outputs.len(), 10_002, "two keys share a stream");
+    }
+}

@@ -1,0 +1,233 @@
+//! The bidirectional mutation: delete a range of the path and make another in its place
+//! [Veach and Guibas 1997, section 5.1].
+
+use super::Mutation;
+use crate::math::Rng;
+use crate::path::{Draft, Failure, Path, Range, resample};
+use crate::scene::Tracer;
+
+/// Deletes the edges between two kept vertices and replaces them by walks from both sides.
+#[derive(Clone, Copy, Debug)]
+pub struct Bidirectional {
+    /// Longest path it may make, in edges.
+    pub max_edges: usize,
+}
+
+/// The kept ends of a move: `l` and `m` of the literature, with `l + 1` vertices kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ends {
+    /// Vertices kept from the light end, `l + 1`.
+    pub kept_light: usize,
+    /// `m`: first vertex kept at the eye end, in the path that is left.
+    pub from: usize,
+    /// `m'`: the same vertex in the path that is made.
+    pub to: usize,
+    /// Vertices that the walk from the light side made.
+    pub from_light: usize,
+}
+
+impl Ends {
+    /// Edges deleted.
+    pub fn deleted(self) -> usize {
+        self.from + 1 - self.kept_light
+    }
+
+    /// Edges added.
+    pub fn added(self) -> usize {
+        self.to + 1 - self.kept_light
+    }
+}
+
+/// Weight of deleting `edges` edges.
+#[inline]
+fn deletion_weight(edges: usize) -> f64 {
+    match edges {
+        1 => 0.25,
+        2 => 0.5,
+        _ => (-(edges as f64)).exp2(),
+    }
+}
+
+/// Weight of adding `difference` edges more or fewer than were deleted.
+#[inline]
+fn addition_weight(difference: usize) -> f64 {
+    match difference {
+        0 => 0.5,
+        1 => 0.15,
+        _ => 0.2 * (-(difference as f64)).exp2(),
+    }
+}
+
+/// Bit `j + 1` stands for vertex `j`, bit 0 for the virtual end "before the light".
+#[inline]
+fn end_mask(x: &Path) -> u128 {
+    x.connectable() << 1 | 1
+}
+
+/// The pairs of ends with `edges` edges between them: bit `p` is set when `l + 1 = p` is one.
+#[inline]
+fn ranges(mask: u128, edges: usize) -> u128 {
+    let pairs = mask & mask >> edges;
+    // (before the light, light) deletes nothing.
+    if edges == 1 { pairs & !1 } else { pairs }
+}
+
+/// `N_d`: the sum of deletion weights over all feasible ranges.
+#[inline]
+fn deletion_total(x: &Path) -> f64 {
+    let mask = end_mask(x);
+    let count = |edges: usize| f64::from(ranges(mask, edges).count_ones());
+    (1..=x.edge_count() + 1).map(|edges| deletion_weight(edges) * count(edges)).sum()
+}
+
+/// Position of the set bit number `rank` of `bits`, counted from the lowest.
+#[inline]
+fn nth_set_bit(mut bits: u128, rank: usize) -> usize {
+    for _ in 0..rank {
+        bits &= bits - 1;
+    }
+    bits.trailing_zeros() as usize
+}
+
+impl Bidirectional {
+    /// The numbers of edges that may replace `deleted` edges of a path of `edges`.
+    #[inline]
+    fn admissible(
+        self,
+        edges: usize,
+        kept_light: usize,
+        deleted: usize,
+    ) -> std::ops::RangeInclusive<usize> {
+        let rest = edges + 1 - deleted;
+        // `rest` counts one too many, since a path that is replaced whole has a virtual first edge.
+        let shortest = if kept_light == 0 || deleted == 1 { 2 } else { 1 };
+        shortest..=(self.max_edges + 1).saturating_sub(rest)
+    }
+
+    /// `N_a`: the sum of addition weights over the admissible numbers of edges.
+    #[inline]
+    fn addition_total(self, edges: usize, kept_light: usize, deleted: usize) -> f64 {
+        self.admissible(edges, kept_light, deleted)
+            .map(|added| addition_weight(added.abs_diff(deleted)))
+            .sum()
+    }
+
+    /// `p_d p_a1 p_a2`: the probability of choosing just these ends and one way to make them.
+    pub(super) fn selection(self, x: &Path, via: Ends) -> f64 {
+        let (deleted, added) = (via.deleted(), via.added());
+        let p_range = deletion_weight(deleted) / deletion_total(x);
+        let p_length = addition_weight(added.abs_diff(deleted))
+            / self.addition_total(x.edge_count(), via.kept_light, deleted);
+        p_range * p_length / added as f64
+    }
+
+    fn choose_range(x: &Path, rng: &mut Rng) -> Option<(usize, usize)> {
+        let mask = end_mask(x);
+        let mut u = rng.uniform() * deletion_total(x);
+        let mut chosen = None;
+        for edges in 1..=x.edge_count() + 1 {
+            let pairs = ranges(mask, edges);
+            if pairs == 0 {
+                continue;
+            }
+            chosen = Some((edges, pairs));
+            u -= deletion_weight(edges) * f64::from(pairs.count_ones());
+            if u < 0.0 {
+                break;
+            }
+        }
+        let (edges, pairs) = chosen?;
+        let kept_light = nth_set_bit(pairs, rng.below(pairs.count_ones() as usize));
+        Some((kept_light, kept_light + edges - 1))
+    }
+
+    fn choose_length(self, x: &Path, ends: (usize, usize), rng: &mut Rng) -> Option<usize> {
+        let (kept_light, from) = ends;
+        let deleted = from + 1 - kept_light;
+        let admissible = self.admissible(x.edge_count(), kept_light, deleted);
+        let mut u = rng.uniform() * self.addition_total(x.edge_count(), kept_light, deleted);
+        let mut chosen = None;
+        for added in admissible {
+            chosen = Some(added);
+            u -= addition_weight(added.abs_diff(deleted));
+            if u < 0.0 {
+                break;
+            }
+        }
+        chosen
+    }
+}
+
+impl Mutation for Bidirectional {
+    type Move = Ends;
+
+    fn applicable(&self, _: &Path) -> bool {
+        true
+    }
+
+    fn propose(
+        &self,
+        scene: &Tracer<'_>,
+        x: &Path,
+        rng: &mut Rng,
+        draft: &mut Draft,
+        y: &mut Path,
+    ) -> Result<Ends, Failure> {
+        let (kept_light, from) = Self::choose_range(x, rng).ok_or(Failure::NoSubpath)?;
+        let added =
+            self.choose_length(x, (kept_light, from), rng).ok_or(Failure::LengthOutOfRange)?;
+        let from_light = rng.below(added);
+        let from_eye = added - 1 - from_light;
+        let range = Range { kept_light, kept_from: from, from_light, from_eye };
+        resample(scene, x, range, rng, draft, y)?;
+        Ok(Ends { kept_light, from, to: kept_light + added - 1, from_light })
+    }
+
+    /// The number of new vertices from the light side has no unique partner in the reverse move,
+    /// so it is summed over; the ends have one.
+    fn transition(&self, x: &Path, y: &Path, via: Ends) -> f64 {
+        self.selection(x, via) * y.reciprocal_sum(via.kept_light, via.to)
+    }
+
+    fn reverse(&self, via: Ends) -> Ends {
+        Ends { from: via.to, to: via.from, ..via }
+    }
+
+    fn kept(&self, x: &Path, via: Ends) -> (usize, usize) {
+        (via.kept_light, x.edge_count() + 1 - via.from)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The worked example: `L D E` with a pinhole, an area light and at most seven edges.
+    #[test]
+    fn selection_probabilities_of_a_short_path() {
+        let mask = 0b1111_u128; // before the light, L, D, E
+        let count = |edges| ranges(mask, edges).count_ones();
+        assert_eq!([count(1), count(2), count(3)], [2, 2, 1], "(0,1)(1,2) (-1,1)(0,2) (-1,2)");
+        let total: f64 = (1..=3).map(|e| deletion_weight(e) * f64::from(count(e))).sum();
+        assert!((total - 1.625).abs() < 1e-15, "N_d is {total}");
+
+        let b = Bidirectional { max_edges: 7 };
+        assert_eq!(b.admissible(2, 1, 2), 1..=7, "for (0,2)");
+        assert!((b.addition_total(2, 1, 2) - 0.89375).abs() < 1e-15, "N_a of (0,2)");
+        assert_eq!(b.admissible(2, 1, 1), 2..=6, "for (0,1)");
+        assert!((b.addition_total(2, 1, 1) - 0.24375).abs() < 1e-15, "N_a of (0,1)");
+        assert_eq!(b.admissible(2, 0, 3), 2..=8, "for (-1,2)");
+        assert!((b.addition_total(2, 0, 3) - 0.89375).abs() < 1e-15, "N_a of (-1,2)");
+
+        let speculars = 0b1011_u128; // L S E
+        let count = |edges| ranges(speculars, edges).count_ones();
+        assert_eq!([count(1), count(2), count(3)], [0, 1, 1], "only (0,2) and (-1,2)");
+    }
+
+    #[test]
+    fn set_bits_are_found_in_order() {
+        let bits = 0b1010_0110_u128;
+        let found: Vec<usize> = (0..4).map(|rank| nth_set_bit(bits, rank)).collect();
+        assert_eq!(found, [1, 2, 5, 7], "positions of the set bits");
+    }
+}

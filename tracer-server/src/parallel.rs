@@ -1,0 +1,34 @@
+//! Spreading work over threads without making the result depend on them.
+
+use std::sync::Mutex;
+use std::thread;
+
+/// Hands `items` to `threads` workers, each with a state made by `start`, until none is left;
+/// returns the states.
+///
+/// Which worker gets which item is a matter of luck, so `work` must put its result into the item.
+pub fn for_each<T, S: Send>(
+    threads: usize,
+    items: impl Iterator<Item = T> + Send,
+    start: impl Fn() -> S + Sync,
+    work: impl Fn(&mut S, T) + Sync,
+) -> Vec<S> {
+    let queue = Mutex::new(items);
+    let worker = || {
+        let mut state = start();
+        while let Some(item) = queue.lock().ok().and_then(|mut queue| queue.next()) {
+            work(&mut state, item);
+        }
+        state
+    };
+    if threads <= 1 {
+        return vec![worker()];
+    }
+    thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(worker)).collect();
+        workers
+            .into_iter()
+            .map(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+            .collect()
+    })
+}

@@ -1,0 +1,198 @@
+//! From vertices to a path: splicing, and the computation of every cached value.
+
+use std::f64::consts::PI;
+
+use common::{Rgb, VertexKind};
+use glam::DVec2;
+
+use super::{Edge, Failure, NO_SCATTERING, Path, Vertex, camera_vertex};
+use crate::bsdf::Scatter as _;
+use crate::scene::Tracer;
+
+/// How a path is made of an older one: its ends are kept, what lies between is replaced.
+#[derive(Clone, Copy, Debug)]
+pub struct Splice<'a> {
+    /// The older path.
+    pub base: &'a Path,
+    /// Vertices kept from its light end.
+    pub kept_light: usize,
+    /// New vertices on the light side, in the order of the path.
+    pub light: &'a [Vertex],
+    /// New vertices on the eye side, in the order of a walk from the eye: the last one comes first
+    /// in the path.
+    pub eye: &'a [Vertex],
+    /// The first vertex kept at the eye end, as an index into `base`.
+    pub kept_from: usize,
+    /// The film point, where a walk from the lens has drawn one.
+    pub film: Option<DVec2>,
+}
+
+impl Path {
+    /// Only the lens: the base for paths that are new from end to end.
+    pub fn at_lens(scene: &Tracer<'_>) -> Self {
+        let mut path = Self::default();
+        path.vertices.push(camera_vertex(scene));
+        path.scattering.push(NO_SCATTERING);
+        path
+    }
+
+    /// Becomes the path that `splice` describes and computes its cached values.
+    ///
+    /// Fails when the path carries no light. Visibility is not tested: ask
+    /// [`Path::connection_is_clear`] about the one edge that no ray has traced.
+    pub fn splice(&mut self, scene: &Tracer<'_>, splice: &Splice<'_>) -> Result<(), Failure> {
+        let base = splice.base;
+        let first_kept = splice.kept_light + splice.light.len() + splice.eye.len();
+        self.vertices.clear();
+        self.edges.clear();
+        self.scattering.clear();
+
+        self.vertices.extend(base.vertices[..splice.kept_light].iter().copied());
+        self.vertices.extend(splice.light.iter().copied());
+        self.vertices.extend(splice.eye.iter().rev().copied());
+        self.vertices.extend(base.vertices[splice.kept_from..].iter().copied());
+
+        let first_new_edge = splice.kept_light.saturating_sub(1);
+        self.edges.extend(base.edges[..first_new_edge].iter().copied());
+        for j in first_new_edge..first_kept {
+            let edge = self.new_edge(scene, j)?;
+            self.edges.push(edge);
+        }
+        self.edges.extend(base.edges[splice.kept_from..].iter().copied());
+        if splice.kept_from + 1 < base.vertices.len() {
+            self.film = base.film;
+            self.pixel = base.pixel;
+        } else {
+            self.find_film_point(scene, splice.film)?;
+        }
+
+        self.scattering.extend(base.scattering[..first_new_edge].iter().copied());
+        for j in first_new_edge..=first_kept.min(self.edges.len() - 1) {
+            let scattering = self.new_scattering(scene, j)?;
+            self.scattering.push(scattering);
+        }
+        let copied = (splice.kept_from + 1).min(base.scattering.len());
+        self.scattering.extend(base.scattering[copied..].iter().copied());
+        if self.scattering.len() < self.vertices.len() {
+            self.scattering.push(NO_SCATTERING);
+        }
+        self.weigh(scene)
+    }
+
+    /// True when nothing blocks the edge from vertex `j` to its successor, and it is long enough
+    /// for that to mean anything.
+    #[inline]
+    pub fn connection_is_clear(&self, scene: &Tracer<'_>, j: usize) -> bool {
+        let (a, b) = (&self.vertices[j], &self.vertices[j + 1]);
+        let reach = scene.reach(a.primitive, b.primitive);
+        (b.position - a.position).length_squared() > reach * reach
+            && scene.visible(&a.anchor(), &b.anchor())
+    }
+
+    #[inline]
+    fn new_edge(&self, scene: &Tracer<'_>, j: usize) -> Result<Edge, Failure> {
+        let (a, b) = (&self.vertices[j], &self.vertices[j + 1]);
+        let span = b.position - a.position;
+        let length_squared = span.length_squared();
+        if !(length_squared > 0.0) {
+            return Err(Failure::Occluded);
+        }
+        let direction = span / length_squared.sqrt();
+        let cos_a = a.normal.dot(direction);
+        if a.kind == VertexKind::Light && !(cos_a > 0.0) {
+            // Lights are dark on their back.
+            return Err(Failure::ZeroContribution);
+        }
+        let cos_b = -b.normal.dot(direction);
+        let at_b = if b.kind == VertexKind::Eye {
+            if !(cos_b > 0.0) {
+                return Err(Failure::OffFilm);
+            }
+            scene.camera().film_per_solid_angle(cos_b)
+        } else {
+            cos_b.abs()
+        };
+        Ok(Edge { direction, geometry: cos_a.abs() * at_b / length_squared })
+    }
+
+    /// The film point: drawn by the walk from the lens, or found by projection.
+    fn find_film_point(&mut self, scene: &Tracer<'_>, drawn: Option<DVec2>) -> Result<(), Failure> {
+        let camera = scene.camera();
+        let film = match drawn {
+            Some(film) => film,
+            None => {
+                let from_lens = self.edges.last().map(|edge| -edge.direction);
+                from_lens.and_then(|d| camera.project(d)).ok_or(Failure::OffFilm)?
+            }
+        };
+        self.film = film;
+        self.pixel = camera.pixel(film) as u32;
+        Ok(())
+    }
+
+    #[inline]
+    fn new_scattering(
+        &self,
+        scene: &Tracer<'_>,
+        j: usize,
+    ) -> Result<crate::bsdf::Scattering, Failure> {
+        if j == 0 {
+            return Ok(NO_SCATTERING);
+        }
+        let vertex = &self.vertices[j];
+        let to_light = -self.edges[j - 1].direction;
+        let to_eye = self.edges[j].direction;
+        scene
+            .bsdf(vertex.material)
+            .evaluate(vertex.normal, to_light, to_eye, vertex.event)
+            .ok_or(Failure::ZeroContribution)
+    }
+
+    /// Colour, reciprocals, their sum and the mask of connectable vertices.
+    fn weigh(&mut self, scene: &Tracer<'_>) -> Result<(), Failure> {
+        let k = self.edges.len();
+        let emission =
+            scene.emission(self.vertices[0].primitive).ok_or(Failure::ZeroContribution)?;
+        self.color = emission.radiance;
+        self.connectable = 1 | 1 << k;
+        for j in 1..k {
+            self.color *= self.scattering[j].color;
+            self.connectable |= u128::from(!self.vertices[j].event.is_specular()) << j;
+        }
+        self.luminance = self.color.luminance();
+        self.weigh_splits(emission.area_pdf);
+        self.density_sum = self.reciprocals.iter().sum::<f64>() / self.luminance;
+        if self.color == Rgb::BLACK {
+            return Err(Failure::ZeroContribution);
+        }
+        let sound = self.density_sum.is_finite() && self.luminance.is_finite();
+        if !(sound && self.luminance > 0.0 && self.density_sum > 0.0) {
+            return Err(Failure::NotFinite);
+        }
+        Ok(())
+    }
+
+    /// The reciprocals of the scalar parts of all `C_i`: (light prefix) x (connection) x (eye
+    /// suffix). Densities and Dirac deltas of traced edges have cancelled in the weights.
+    fn weigh_splits(&mut self, light_area_pdf: f64) {
+        let k = self.edges.len();
+        // First the eye suffixes: entry j holds the weight of making vertices j..=k from the eye.
+        self.reciprocals.clear();
+        self.reciprocals.extend(std::iter::repeat_n(1.0, k + 1));
+        for j in (0..k.saturating_sub(1)).rev() {
+            self.reciprocals[j] = self.reciprocals[j + 1] * self.scattering[j + 1].eye_weight;
+        }
+        // A light that is hit needs no connection.
+        self.reciprocals[0] = 1.0 / self.reciprocals[0];
+        let mut prefix = 1.0 / light_area_pdf;
+        for i in 0..k {
+            let connection = self.scattering[i].connection
+                * self.edges[i].geometry
+                * self.scattering[i + 1].connection;
+            let contribution = prefix * connection * self.reciprocals[i + 1];
+            self.reciprocals[i + 1] = if connection > 0.0 { 1.0 / contribution } else { 0.0 };
+            // Emission is drawn with density cos / pi, so its weight is pi.
+            prefix *= if i == 0 { PI } else { self.scattering[i].light_weight };
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Light paths as values: vertices, cached weights, and the densities that follow from them.
+//!
+//! A path runs from the light (vertex 0) to the lens (vertex k). For every split `i` in `-1..k` the
+//! unweighted bidirectional contribution `C_i = f / p_i` is a colour common to all splits times a
+//! scalar; the path stores the reciprocals of those scalars, from which follow the balance weights
+//! [Veach 1997, section 10.2], the acceptance ratios of the mutations, and
+//! `S = sum_i 1 / lum C_i`.
+
+mod assemble;
+mod bidirectional;
+mod failure;
+mod record;
+mod resample;
+mod vertex;
+mod walk;
+
+pub use assemble::Splice;
+pub use bidirectional::BidirectionalSampler;
+pub use failure::Failure;
+pub use resample::{Draft, Range, end_on_light, open_for_connection, resample};
+pub use vertex::Vertex;
+pub use walk::{camera_vertex, emit, extend, light_vertex, scatter};
+
+use arrayvec::ArrayVec;
+use common::{Rgb, VertexKind};
+use glam::{DVec2, DVec3};
+
+use crate::bsdf::Scattering;
+use crate::scene::MAX_EDGES;
+
+/// Most vertices a path can have.
+pub const MAX_VERTICES: usize = MAX_EDGES + 1;
+
+/// Vertices in the order of a walk.
+pub type Vertices = ArrayVec<Vertex, MAX_VERTICES>;
+
+/// One edge, from a vertex to its neighbour on the eye side.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Edge {
+    /// Unit direction from light to eye.
+    pub direction: DVec3,
+    /// What the edge contributes to a connection: `|cos| |cos| / r^2`, per unit area; on the edge
+    /// to the lens `|cos| / r^2` times film area per solid angle.
+    pub geometry: f64,
+}
+
+/// A complete path that carries light: `0 < lum f < inf`.
+///
+/// It is only made by [`Path::splice`], which computes every cached value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path {
+    vertices: Vertices,
+    /// Edge `j` joins vertices `j` and `j + 1`.
+    edges: ArrayVec<Edge, MAX_EDGES>,
+    /// Entry `j` belongs to vertex `j`; the two ends hold [`NO_SCATTERING`].
+    scattering: ArrayVec<Scattering, MAX_VERTICES>,
+    /// Entry `i + 1` is the reciprocal of the scalar part of `C_i`.
+    reciprocals: ArrayVec<f64, MAX_VERTICES>,
+    /// The colour common to all `C_i`.
+    color: Rgb,
+    /// Its luminance.
+    luminance: f64,
+    /// `S(x) = sum_i 1 / lum C_i`.
+    density_sum: f64,
+    film: DVec2,
+    pixel: u32,
+    /// Bit `j` is set when vertex `j` can be connected.
+    connectable: u128,
+}
+
+/// Stands for the scattering of the two ends of a path, which do not scatter.
+const NO_SCATTERING: Scattering = Scattering {
+    color: Rgb::WHITE,
+    connection: 1.0,
+    light_weight: 1.0,
+    eye_weight: 1.0,
+    light_pdf: 1.0,
+    eye_pdf: 1.0,
+};
+
+impl Default for Path {
+    /// An empty path: a buffer to splice into.
+    fn default() -> Self {
+        Self {
+            vertices: Vertices::new(),
+            edges: ArrayVec::new(),
+            scattering: ArrayVec::new(),
+            reciprocals: ArrayVec::new(),
+            color: Rgb::BLACK,
+            luminance: 0.0,
+            density_sum: 0.0,
+            film: DVec2::ZERO,
+            pixel: 0,
+            connectable: 0,
+        }
+    }
+}
+
+impl Path {
+    /// Number of edges, `k`.
+    #[inline]
+    pub fn edge_count(&self) -> usize {
+        self.edges.len()
+    }
+
+    /// All vertices, the light first.
+    #[inline]
+    pub fn vertices(&self) -> &[Vertex] {
+        &self.vertices
+    }
+
+    /// All edges, the one at the light first.
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
+    }
+
+    /// What vertex `j` does; meaningless at the two ends.
+    #[inline]
+    pub fn scattering(&self, j: usize) -> &Scattering {
+        &self.scattering[j]
+    }
+
+    /// The film point, `u` to the right and `v` downwards, both in [0, 1).
+    #[inline]
+    pub fn film(&self) -> DVec2 {
+        self.film
+    }
+
+    /// The film's pixel.
+    #[inline]
+    pub fn pixel(&self) -> usize {
+        self.pixel as usize
+    }
+
+    /// Luminance of the colour common to all splits.
+    #[inline]
+    pub fn luminance(&self) -> f64 {
+        self.luminance
+    }
+
+    /// The contribution's colour, scaled to unit luminance: what every splat of the path carries.
+    #[inline]
+    pub fn unit_color(&self) -> Rgb {
+        self.color / self.luminance
+    }
+
+    /// `S(x) = sum_i 1 / lum C_i(x)`. Its reciprocal is the path's weight as a bidirectional
+    /// sample, whatever split made it.
+    #[inline]
+    pub fn density_sum(&self) -> f64 {
+        self.density_sum
+    }
+
+    /// `1 / lum C_i` for the split with `light` vertices on the light side (`light = i + 1`);
+    /// zero when the split cannot make the path.
+    #[inline]
+    pub fn reciprocal(&self, light: usize) -> f64 {
+        self.reciprocals[light] / self.luminance
+    }
+
+    /// Sum of `1 / lum C_i` over the splits with `first..=last` vertices on the light side.
+    #[inline]
+    pub fn reciprocal_sum(&self, first: usize, last: usize) -> f64 {
+        self.reciprocals[first..=last].iter().sum::<f64>() / self.luminance
+    }
+
+    /// Bit `j` is set when vertex `j` can be connected.
+    #[inline]
+    pub fn connectable(&self) -> u128 {
+        self.connectable
+    }
+
+    /// Index of the first vertex, seen from the lens, that is not specular; zero for a light that
+    /// is seen directly or through specular vertices only.
+    #[inline]
+    pub fn first_diffuse_from_eye(&self) -> usize {
+        let last = self.edge_count() - 1;
+        (1..=last).rev().find(|&j| self.connectable >> j & 1 == 1).unwrap_or(0)
+    }
+
+    /// Heckbert's class, such as `LDSE`.
+    pub fn class(&self) -> String {
+        self.vertices.iter().map(|v| v.kind.letter()).collect()
+    }
+
+    /// True when some vertex is specular.
+    pub fn has_specular(&self) -> bool {
+        self.vertices.iter().any(|v| v.kind == VertexKind::Specular)
+    }
+}

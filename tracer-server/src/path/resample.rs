@@ -1,0 +1,154 @@
+//! Replacing a range of a path by two random walks and one connection.
+
+use glam::DVec2;
+
+use super::walk::{emit, light_vertex, scatter, walk};
+use super::{Failure, Path, Splice, Vertex, Vertices};
+use crate::bsdf::Scatter as _;
+use crate::math::Rng;
+use crate::scene::Tracer;
+use common::VertexKind;
+
+/// Which vertices are deleted and how many are made from each side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Range {
+    /// Vertices kept from the light end.
+    pub kept_light: usize,
+    /// First vertex kept at the eye end.
+    pub kept_from: usize,
+    /// Vertices to make by a walk from the light side.
+    pub from_light: usize,
+    /// Vertices to make by a walk from the eye side.
+    pub from_eye: usize,
+}
+
+/// Room for the vertices of a proposal, so that a step allocates nothing.
+#[derive(Clone, Debug, Default)]
+pub struct Draft {
+    /// Vertices of a walk from the light side.
+    pub light: Vertices,
+    /// Vertices of a walk from the eye side.
+    pub eye: Vertices,
+}
+
+impl Draft {
+    /// Empties both sides.
+    pub fn clear(&mut self) {
+        self.light.clear();
+        self.eye.clear();
+    }
+}
+
+/// Makes `y` of `x` with `range` replaced by two fresh walks of exactly the wanted lengths, joined
+/// by an explicit connection; or by one walk from the eye that must end on a light.
+pub fn resample(
+    scene: &Tracer<'_>,
+    x: &Path,
+    range: Range,
+    rng: &mut Rng,
+    draft: &mut Draft,
+    y: &mut Path,
+) -> Result<(), Failure> {
+    draft.clear();
+    walk_from_light(scene, x, range, rng, &mut draft.light)?;
+    let film = walk_from_eye(scene, x, range, rng, &mut draft.eye)?;
+    let connected = range.kept_light + range.from_light > 0;
+    if connected {
+        if let Some(end) = draft.light.last_mut().filter(|v| v.kind != VertexKind::Light) {
+            open_for_connection(scene, end)?;
+        }
+        if let Some(end) = draft.eye.last_mut() {
+            open_for_connection(scene, end)?;
+        }
+    } else {
+        let end = draft.eye.last_mut().ok_or(Failure::NoSubpath)?;
+        end_on_light(scene, end)?;
+    }
+    y.splice(
+        scene,
+        &Splice {
+            base: x,
+            kept_light: range.kept_light,
+            light: &draft.light,
+            eye: &draft.eye,
+            kept_from: range.kept_from,
+            film,
+        },
+    )?;
+    let last_light = range.kept_light + range.from_light;
+    if connected && !y.connection_is_clear(scene, last_light - 1) {
+        return Err(Failure::Occluded);
+    }
+    Ok(())
+}
+
+/// Lets the end of a walk take part in an explicit connection.
+#[inline]
+pub fn open_for_connection(scene: &Tracer<'_>, end: &mut Vertex) -> Result<(), Failure> {
+    let event = scene.bsdf(end.material).connectable().ok_or(Failure::SpecularConnection)?;
+    end.set_event(event);
+    Ok(())
+}
+
+/// Declares that a path from the eye ends on the light it has hit.
+#[inline]
+pub fn end_on_light(scene: &Tracer<'_>, end: &mut Vertex) -> Result<(), Failure> {
+    scene.emission(end.primitive).ok_or(Failure::NoLightHit)?;
+    end.set_light();
+    Ok(())
+}
+
+fn walk_from_light(
+    scene: &Tracer<'_>,
+    x: &Path,
+    range: Range,
+    rng: &mut Rng,
+    out: &mut Vertices,
+) -> Result<(), Failure> {
+    if range.from_light == 0 {
+        return Ok(());
+    }
+    let mut count = range.from_light;
+    let (start, direction) = match range.kept_light {
+        0 => {
+            let start = light_vertex(scene, rng);
+            out.push(start);
+            count -= 1;
+            if count == 0 {
+                return Ok(());
+            }
+            (start, emit(&start, rng))
+        }
+        1 => (x.vertices()[0], emit(&x.vertices()[0], rng)),
+        kept => {
+            let mut start = x.vertices()[kept - 1];
+            let back = -x.edges()[kept - 2].direction;
+            let direction = scatter(scene, &mut start, back, rng)?;
+            (start, direction)
+        }
+    };
+    walk(scene, &start, direction, count, rng, out)
+}
+
+/// Returns the film point, if the walk starts at the lens and draws one.
+fn walk_from_eye(
+    scene: &Tracer<'_>,
+    x: &Path,
+    range: Range,
+    rng: &mut Rng,
+    out: &mut Vertices,
+) -> Result<Option<DVec2>, Failure> {
+    if range.from_eye == 0 {
+        return Ok(None);
+    }
+    let mut start = x.vertices()[range.kept_from];
+    let (direction, film) = if start.is_lens() {
+        let film = DVec2::new(rng.uniform(), rng.uniform());
+        (scene.camera().direction(film), Some(film))
+    } else {
+        let back = x.edges()[range.kept_from].direction;
+        (scatter(scene, &mut start, back, rng)?, None)
+    };
+    walk(scene, &start, direction, range.from_eye, rng, out)?;
+    Ok(film)
+}

@@ -1,0 +1,262 @@
+//! From a description to a world that can be traced.
+
+use common::{Camera, CameraError, Rgb, SceneFrame};
+use glam::DVec3;
+use thiserror::Error;
+
+use super::accel::{Accel, Anchor};
+use super::description::{BsdfDescription, Material, SceneDescription};
+use super::emitter::Emitters;
+use super::surface::{Ball, NO_PRIMITIVE, Triangle};
+use super::{MAX_EDGES, NO_EMITTER, Primitive, Scene, SceneFeatures, SurfaceMaterial, hash};
+use crate::bsdf::{Bsdf, Dielectric, Lambert, Mirror};
+
+/// Why a description makes no scene.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SceneError {
+    /// Nothing to trace.
+    #[error("the scene has no surface: it needs at least one triangle or sphere of non-zero size")]
+    Empty,
+    /// No light.
+    #[error("the scene has no light: give at least one material an emission")]
+    NoLight,
+    /// A vertex or radius that is no finite number.
+    #[error("{shape} has a coordinate that is not a finite number")]
+    NotFinite {
+        /// The shape's name.
+        shape: String,
+    },
+    /// An index that points past the end of what it refers to.
+    #[error("{shape} refers to {what} {index}, but there are only {count}")]
+    BadIndex {
+        /// The shape's name.
+        shape: String,
+        /// "vertex" or "material".
+        what: &'static str,
+        /// The index.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// A path length outside what the tracer can hold.
+    #[error("max_edges is {0}; it must lie between 1 and {MAX_EDGES}")]
+    BadMaxEdges(usize),
+    /// The camera makes no picture.
+    #[error("{0}")]
+    Camera(#[from] CameraError),
+}
+
+/// How far a light that lies in the plane of another surface is moved to its front, in scene units.
+const LIGHT_LIFT: f64 = 1.0 / 32.0;
+
+impl Scene {
+    /// Normalises, checks and indexes a description.
+    pub fn new(description: &SceneDescription) -> Result<Self, SceneError> {
+        if !(1..=MAX_EDGES).contains(&description.max_edges) {
+            return Err(SceneError::BadMaxEdges(description.max_edges));
+        }
+        let mut camera = Camera::new(&description.camera, description.width, description.height)?;
+        let frame = normalising_frame(description)?;
+        camera.origin = frame.to_scene(camera.origin);
+
+        let mut warnings = Vec::new();
+        let (mut triangles, mut materials) = gather_triangles(description, frame, &mut warnings)?;
+        let balls = gather_balls(description, frame, &mut materials)?;
+        if materials.is_empty() {
+            return Err(SceneError::Empty);
+        }
+        let emits =
+            |material: u16| !description.materials[usize::from(material)].emission.is_black();
+        if !materials.iter().any(|&m| emits(m)) {
+            return Err(SceneError::NoLight);
+        }
+        let mut accel = Accel::new(triangles.clone(), balls.clone());
+        let lifted = lift_buried_lights(&accel, &mut triangles, |i| emits(materials[i]));
+        if lifted > 0 {
+            warnings.push(format!(
+                "{lifted} light triangles lie in the plane of another surface; they were moved \
+                 {:e} units to their front",
+                LIGHT_LIFT / frame.scale
+            ));
+            accel = Accel::new(triangles, balls);
+        }
+        let (emitters, primitives, radiance_scale) = light_up(description, &accel, &materials);
+        let surfaces =
+            description.materials.iter().map(|m| surface(m, 1.0 / radiance_scale)).collect();
+        Ok(Self {
+            name: description.name.clone(),
+            hash: hash::digest(description),
+            frame,
+            camera,
+            max_edges: description.max_edges,
+            radiance_scale,
+            features: SceneFeatures::of(description),
+            accel,
+            primitives,
+            surfaces,
+            emitters,
+            warnings,
+        })
+    }
+}
+
+/// The frame that brings the scene's largest extent into [1024, 2048): the box test of the
+/// hierarchy then has a relative error of 1e-7 whatever the units of the file.
+fn normalising_frame(description: &SceneDescription) -> Result<SceneFrame, SceneError> {
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let mut include = |p: DVec3| {
+        low = low.min(p);
+        high = high.max(p);
+    };
+    for mesh in &description.meshes {
+        if !mesh.positions.iter().all(|p| p.is_finite()) {
+            return Err(SceneError::NotFinite { shape: format!("mesh `{}`", mesh.name) });
+        }
+        for &index in mesh.triangles.as_flattened() {
+            let count = mesh.positions.len();
+            let position = mesh.positions.get(index as usize).ok_or_else(|| {
+                let shape = format!("mesh `{}`", mesh.name);
+                SceneError::BadIndex { shape, what: "vertex", index: index as usize, count }
+            })?;
+            include(*position);
+        }
+    }
+    for sphere in &description.spheres {
+        if !(sphere.centre.is_finite() && sphere.radius.is_finite()) {
+            return Err(SceneError::NotFinite { shape: format!("sphere `{}`", sphere.name) });
+        }
+        include(sphere.centre - sphere.radius);
+        include(sphere.centre + sphere.radius);
+    }
+    let extent = (high - low).max_element();
+    if !(extent > 0.0) || !extent.is_finite() {
+        return Err(SceneError::Empty);
+    }
+    // The exponent is read from the bits: a logarithm could round up at a power of two.
+    let exponent = ((extent.to_bits() >> 52) & 0x7ff) as i32 - 1023;
+    Ok(SceneFrame { centre: 0.5 * (low + high), scale: 2_f64.powi(10 - exponent) })
+}
+
+fn gather_triangles(
+    description: &SceneDescription,
+    frame: SceneFrame,
+    warnings: &mut Vec<String>,
+) -> Result<(Vec<Triangle>, Vec<u16>), SceneError> {
+    let count = description.materials.len();
+    let (mut triangles, mut materials) = (Vec::new(), Vec::new());
+    let mut degenerate = 0_usize;
+    for mesh in &description.meshes {
+        for (indices, &material) in mesh.triangles.iter().zip(&mesh.materials) {
+            if usize::from(material) >= count {
+                let shape = format!("mesh `{}`", mesh.name);
+                let index = usize::from(material);
+                return Err(SceneError::BadIndex { shape, what: "material", index, count });
+            }
+            // Rounded to single precision, so that the traversal sees the same triangle.
+            let corner = |i: u32| frame.to_scene(mesh.positions[i as usize]).as_vec3().as_dvec3();
+            match Triangle::new(indices.map(corner)) {
+                Some(triangle) => {
+                    triangles.push(triangle);
+                    materials.push(material);
+                }
+                None => degenerate += 1,
+            }
+        }
+    }
+    if degenerate > 0 {
+        warnings.push(format!("{degenerate} triangles without area were left out"));
+    }
+    Ok((triangles, materials))
+}
+
+fn gather_balls(
+    description: &SceneDescription,
+    frame: SceneFrame,
+    materials: &mut Vec<u16>,
+) -> Result<Vec<Ball>, SceneError> {
+    let count = description.materials.len();
+    let mut balls = Vec::new();
+    for sphere in &description.spheres {
+        let index = usize::from(sphere.material);
+        if index >= count {
+            let shape = format!("sphere `{}`", sphere.name);
+            return Err(SceneError::BadIndex { shape, what: "material", index, count });
+        }
+        if sphere.radius > 0.0 {
+            balls.push(Ball::new(frame.to_scene(sphere.centre), sphere.radius * frame.scale));
+            materials.push(sphere.material);
+        }
+    }
+    Ok(balls)
+}
+
+/// Moves light triangles that coincide with another surface to their front: which of two coplanar
+/// faces a ray meets first is noise. Returns how many were moved.
+fn lift_buried_lights(
+    accel: &Accel,
+    triangles: &mut [Triangle],
+    is_light: impl Fn(usize) -> bool,
+) -> usize {
+    let mut lifted = 0;
+    for (i, triangle) in triangles.iter_mut().enumerate().filter(|(i, _)| is_light(*i)) {
+        let middle = triangle.sample(4.0 / 9.0, 0.5);
+        let span = 0.5 * LIGHT_LIFT * triangle.normal;
+        let beside = |offset: DVec3, primitive: u32| Anchor {
+            position: middle + offset,
+            normal: triangle.normal,
+            primitive,
+        };
+        // A ray through the light's own plane; the light itself does not count.
+        let buried = !accel.visible(&beside(span, NO_PRIMITIVE), &beside(-span, i as u32));
+        if buried {
+            let moved = triangle
+                .corners()
+                .map(|corner| (corner + LIGHT_LIFT * triangle.normal).as_vec3().as_dvec3());
+            if let Some(moved) = Triangle::new(moved) {
+                *triangle = moved;
+                lifted += 1;
+            }
+        }
+    }
+    lifted
+}
+
+/// Emitters, the table of primitives, and the power of two that emission is divided by.
+fn light_up(
+    description: &SceneDescription,
+    accel: &Accel,
+    materials: &[u16],
+) -> (Emitters, Vec<Primitive>, f64) {
+    let areas =
+        accel.triangles().iter().map(Triangle::area).chain(accel.balls().iter().map(Ball::area));
+    let mut sources: Vec<(u32, Rgb, f64)> = Vec::new();
+    let mut primitives = Vec::with_capacity(materials.len());
+    for (i, (&material, area)) in materials.iter().zip(areas).enumerate() {
+        let emission = description.materials[usize::from(material)].emission;
+        let mut emitter = NO_EMITTER;
+        if !emission.is_black() {
+            emitter = sources.len() as u32;
+            sources.push((i as u32, emission, area));
+        }
+        primitives.push(Primitive { material, emitter });
+    }
+    let power: f64 = sources.iter().map(|&(_, radiance, area)| radiance.luminance() * area).sum();
+    let exponent = ((power.to_bits() >> 52) & 0x7ff) as i32 - 1023;
+    let radiance_scale = 2_f64.powi(exponent.clamp(-1000, 1000));
+    for (_, radiance, _) in &mut sources {
+        *radiance = *radiance / radiance_scale;
+    }
+    (Emitters::new(&sources), primitives, radiance_scale)
+}
+
+fn surface(material: &Material, emission_factor: f64) -> SurfaceMaterial {
+    let bsdf = match material.bsdf {
+        BsdfDescription::Lambert { reflectance } => Bsdf::Lambert(Lambert { reflectance }),
+        BsdfDescription::Mirror { reflectance } => Bsdf::Mirror(Mirror { reflectance }),
+        BsdfDescription::Dielectric { eta, reflectance, transmittance } => {
+            Bsdf::Dielectric(Dielectric { eta, reflectance, transmittance })
+        }
+    };
+    let emission = material.emission * emission_factor;
+    SurfaceMaterial { name: material.name.clone(), bsdf, emission }
+}

@@ -1,0 +1,147 @@
+//! Small scenes for the laws, built in code.
+
+use common::{CameraPose, Rgb};
+use glam::DVec3;
+
+use super::{BsdfDescription, Material, Mesh, Scene, SceneDescription, Sphere};
+
+/// Builds descriptions shape by shape.
+#[derive(Clone, Debug)]
+pub(crate) struct Fixture {
+    pub(crate) description: SceneDescription,
+}
+
+pub(crate) const fn lambert(r: f64, g: f64, b: f64) -> BsdfDescription {
+    BsdfDescription::Lambert { reflectance: Rgb::new(r, g, b) }
+}
+
+pub(crate) const MIRROR: BsdfDescription =
+    BsdfDescription::Mirror { reflectance: Rgb::new(0.9, 0.85, 0.8) };
+
+pub(crate) const GLASS: BsdfDescription = BsdfDescription::Dielectric {
+    eta: 1.5,
+    reflectance: Rgb::WHITE,
+    transmittance: Rgb::new(0.95, 1.0, 0.9),
+};
+
+impl Fixture {
+    /// An empty scene with a camera at `origin` that looks at `target`.
+    pub(crate) fn new(origin: DVec3, target: DVec3, fov: f64) -> Self {
+        let up = if (target - origin).normalize().y.abs() > 0.99 { DVec3::Z } else { DVec3::Y };
+        Self {
+            description: SceneDescription {
+                name: "fixture".to_owned(),
+                camera: CameraPose { origin, target, up, vertical_fov: fov },
+                width: 32,
+                height: 32,
+                max_edges: 6,
+                materials: Vec::new(),
+                meshes: Vec::new(),
+                spheres: Vec::new(),
+            },
+        }
+    }
+
+    fn material(&mut self, bsdf: BsdfDescription, emission: Rgb) -> u16 {
+        let name = format!("material {}", self.description.materials.len());
+        self.description.materials.push(Material { name, bsdf, emission });
+        (self.description.materials.len() - 1) as u16
+    }
+
+    /// A parallelogram whose front side is the one that `u x v` points to.
+    pub(crate) fn quad(
+        mut self,
+        bsdf: BsdfDescription,
+        emission: Rgb,
+        corner: [f64; 3],
+        u: [f64; 3],
+        v: [f64; 3],
+    ) -> Self {
+        let material = self.material(bsdf, emission);
+        let (c, u, v) = (DVec3::from(corner), DVec3::from(u), DVec3::from(v));
+        self.description.meshes.push(Mesh {
+            name: format!("quad {material}"),
+            positions: vec![c, c + u, c + u + v, c + v],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            materials: vec![material; 2],
+        });
+        self
+    }
+
+    pub(crate) fn sphere(
+        mut self,
+        bsdf: BsdfDescription,
+        emission: Rgb,
+        centre: [f64; 3],
+        radius: f64,
+    ) -> Self {
+        let material = self.material(bsdf, emission);
+        let name = format!("sphere {material}");
+        self.description.spheres.push(Sphere { name, centre: centre.into(), radius, material });
+        self
+    }
+
+    /// The six inner walls of the cube [-1, 1]^3, all of one material.
+    pub(crate) fn room(self, walls: [BsdfDescription; 6], emission: Rgb) -> Self {
+        let [left, right, floor, ceiling, back, front] = walls;
+        self.quad(left, emission, [-1., -1., -1.], [0., 2., 0.], [0., 0., 2.])
+            .quad(right, emission, [1., -1., -1.], [0., 0., 2.], [0., 2., 0.])
+            .quad(floor, emission, [-1., -1., -1.], [0., 0., 2.], [2., 0., 0.])
+            .quad(ceiling, emission, [-1., 1., -1.], [2., 0., 0.], [0., 0., 2.])
+            .quad(back, emission, [-1., -1., -1.], [2., 0., 0.], [0., 2., 0.])
+            .quad(front, emission, [-1., -1., 1.], [0., 2., 0.], [2., 0., 0.])
+    }
+
+    pub(crate) fn film(mut self, width: u32, height: u32) -> Self {
+        self.description.width = width;
+        self.description.height = height;
+        self
+    }
+
+    pub(crate) fn max_edges(mut self, max_edges: usize) -> Self {
+        self.description.max_edges = max_edges;
+        self
+    }
+
+    pub(crate) fn build(&self) -> Scene {
+        Scene::new(&self.description).expect("a fixture is a valid scene")
+    }
+}
+
+const RED: BsdfDescription = lambert(0.7, 0.2, 0.15);
+const GREEN: BsdfDescription = lambert(0.2, 0.6, 0.2);
+const WHITE: BsdfDescription = lambert(0.7, 0.7, 0.65);
+const BLACK: BsdfDescription = lambert(0.0, 0.0, 0.0);
+
+/// A room with coloured walls and a lamp under its ceiling.
+pub(crate) fn diffuse_room() -> Fixture {
+    Fixture::new(DVec3::new(0.1, 0.0, 0.95), DVec3::new(0.0, -0.1, -1.0), 70.0)
+        .room([RED, GREEN, WHITE, WHITE, WHITE, WHITE], Rgb::BLACK)
+        .quad(BLACK, Rgb::new(12.0, 9.0, 6.0), [-0.3, 0.9, -0.3], [0.6, 0., 0.], [0., 0., 0.5])
+}
+
+/// The same room with a glass and a mirror sphere.
+pub(crate) fn specular_room() -> Fixture {
+    diffuse_room().sphere(GLASS, Rgb::BLACK, [-0.45, -0.6, -0.1], 0.35).sphere(
+        MIRROR,
+        Rgb::BLACK,
+        [0.45, -0.55, -0.4],
+        0.4,
+    )
+}
+
+/// A high-contrast floor seen through a glass ball that fills the picture.
+pub(crate) fn floor_through_glass() -> Fixture {
+    let mut fixture = Fixture::new(DVec3::new(0.0, 0.9, 0.0), DVec3::new(0.0, -1.0, 0.0), 60.0)
+        .quad(BLACK, Rgb::new(9.0, 9.0, 9.0), [-1., 2., -1.], [2., 0., 0.], [0., 0., 2.])
+        .sphere(GLASS, Rgb::BLACK, [0.0, -0.2, 0.0], 0.6);
+    for x in 0..6 {
+        for z in 0..6 {
+            let tone =
+                if (x + z) % 2 == 0 { lambert(0.9, 0.6, 0.3) } else { lambert(0.02, 0.05, 0.1) };
+            let corner = [-1.0 + f64::from(x) / 3.0, -1.0, -1.0 + f64::from(z) / 3.0];
+            fixture = fixture.quad(tone, Rgb::BLACK, corner, [0., 0., 1. / 3.], [1. / 3., 0., 0.]);
+        }
+    }
+    fixture
+}

@@ -1,0 +1,87 @@
+//! A digest of a scene's content: the key under which viewers cache its geometry.
+
+use glam::DVec3;
+
+use super::SceneDescription;
+use super::description::BsdfDescription;
+use common::Rgb;
+
+/// Hex digest of everything that the picture depends on, names included.
+pub(crate) fn digest(description: &SceneDescription) -> String {
+    let mut h = Digest(blake3::Hasher::new());
+    h.text(&description.name);
+    h.camera(description);
+    for material in &description.materials {
+        h.text(&material.name);
+        h.color(material.emission);
+        h.bsdf(&material.bsdf);
+    }
+    for mesh in &description.meshes {
+        h.text(&mesh.name);
+        h.count(mesh.positions.len());
+        mesh.positions.iter().for_each(|&p| h.point(p));
+        h.count(mesh.triangles.len());
+        h.0.update(bytemuck::cast_slice(&mesh.triangles));
+        h.0.update(bytemuck::cast_slice(&mesh.materials));
+    }
+    for sphere in &description.spheres {
+        h.text(&sphere.name);
+        h.point(sphere.centre);
+        h.number(sphere.radius);
+        h.count(usize::from(sphere.material));
+    }
+    h.0.finalize().to_hex()[..32].to_owned()
+}
+
+struct Digest(blake3::Hasher);
+
+impl Digest {
+    fn text(&mut self, text: &str) {
+        self.count(text.len());
+        self.0.update(text.as_bytes());
+    }
+
+    fn count(&mut self, n: usize) {
+        self.0.update(&(n as u64).to_le_bytes());
+    }
+
+    fn number(&mut self, x: f64) {
+        self.0.update(&x.to_bits().to_le_bytes());
+    }
+
+    fn point(&mut self, p: DVec3) {
+        p.to_array().into_iter().for_each(|x| self.number(x));
+    }
+
+    fn color(&mut self, c: Rgb) {
+        [c.r, c.g, c.b].into_iter().for_each(|x| self.number(x));
+    }
+
+    fn camera(&mut self, description: &SceneDescription) {
+        let camera = &description.camera;
+        [camera.origin, camera.target, camera.up].into_iter().for_each(|p| self.point(p));
+        self.number(camera.vertical_fov);
+        self.count(description.width as usize);
+        self.count(description.height as usize);
+        self.count(description.max_edges);
+    }
+
+    fn bsdf(&mut self, bsdf: &BsdfDescription) {
+        match *bsdf {
+            BsdfDescription::Lambert { reflectance } => {
+                self.count(0);
+                self.color(reflectance);
+            }
+            BsdfDescription::Mirror { reflectance } => {
+                self.count(1);
+                self.color(reflectance);
+            }
+            BsdfDescription::Dielectric { eta, reflectance, transmittance } => {
+                self.count(2);
+                self.number(eta);
+                self.color(reflectance);
+                self.color(transmittance);
+            }
+        }
+    }
+}

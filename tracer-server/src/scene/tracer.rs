@@ -1,0 +1,55 @@
+//! A worker's view of the scene.
+
+use std::cell::Cell;
+use std::ops::Deref;
+
+use glam::DVec3;
+
+use super::{Anchor, Hit, Scene};
+
+/// A scene as one worker sees it: the same world, with a count of the rays the worker has cast.
+#[derive(Debug)]
+pub struct Tracer<'s> {
+    scene: &'s Scene,
+    rays: Cell<u64>,
+    shadow_rays: Cell<u64>,
+}
+
+impl<'s> Tracer<'s> {
+    /// A view of `scene` with counts of zero.
+    pub fn new(scene: &'s Scene) -> Self {
+        Self { scene, rays: Cell::new(0), shadow_rays: Cell::new(0) }
+    }
+
+    /// The nearest surface seen from `from` in the unit `direction`.
+    #[inline]
+    pub fn closest(&self, from: &Anchor, direction: DVec3) -> Option<Hit> {
+        self.rays.set(self.rays.get() + 1);
+        self.scene.closest(from, direction)
+    }
+
+    /// True when nothing stands between the two points.
+    #[inline]
+    pub fn visible(&self, a: &Anchor, b: &Anchor) -> bool {
+        self.shadow_rays.set(self.shadow_rays.get() + 1);
+        self.scene.visible(a, b)
+    }
+
+    /// Closest-hit rays cast so far.
+    pub fn rays(&self) -> u64 {
+        self.rays.get()
+    }
+
+    /// Shadow rays cast so far.
+    pub fn shadow_rays(&self) -> u64 {
+        self.shadow_rays.get()
+    }
+}
+
+impl Deref for Tracer<'_> {
+    type Target = Scene;
+
+    fn deref(&self) -> &Scene {
+        self.scene
+    }
+}
