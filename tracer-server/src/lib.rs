@@ -3,6 +3,7 @@
 pub mod bsdf;
 pub mod chain;
 pub mod film;
+pub mod hub;
 pub mod integrator;
 pub mod math;
 pub mod mutation;

@@ -1,0 +1,353 @@
+//! The two lanes of one viewer: what it must get, and what it gets as far as it can.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use common::{FilmTile, Gap, PathBatch, Statistics};
+use tokio::sync::Notify;
+use tokio::sync::futures::Notified;
+use tokio::time::Instant;
+
+use super::budget::Budget;
+use super::{HubLimits, NumberedFilm};
+
+/// A film tile holds whole rows of about this many bytes.
+const TILE_BYTES: usize = 192 << 10;
+/// Bytes of a pixel in a tile.
+const PIXEL_BYTES: usize = 12;
+/// The data lane holds what the budget sends in this many seconds, so that a slow viewer sees the
+/// present and not the past.
+const LANE_SECONDS: f64 = 0.5;
+/// The data lane holds at least this many bytes, several batches.
+const MIN_LANE_BYTES: usize = 256 << 10;
+
+/// What goes to a viewer.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Delivery {
+    /// Counts and rates, with this viewer's own.
+    Statistics(Statistics),
+    /// Rows of the film.
+    Film(FilmTile),
+    /// The snapshot is complete.
+    SnapshotEnd,
+    /// A batch, shared with the other viewers.
+    Paths(Arc<PathBatch>),
+    /// What was dropped since the last gap.
+    Gap(Gap),
+    /// The viewer must be disconnected, for the reason given.
+    Closed(String),
+}
+
+/// What [`Lane::take`] found.
+#[derive(Debug)]
+pub(super) enum Taken {
+    /// Something to send.
+    Now(Delivery),
+    /// Rows to send, still to be converted: not under the lane's lock.
+    Film(TileOrder),
+    /// Nothing until the lane is filled, or until the instant when the budget allows more.
+    Later(Option<Instant>),
+}
+
+/// Rows of a snapshot that are due.
+#[derive(Debug)]
+pub(super) struct TileOrder {
+    film: NumberedFilm,
+    first_row: u32,
+    rows: u32,
+}
+
+/// The lanes of one viewer.
+#[derive(Debug)]
+pub(super) struct Lane {
+    session: u64,
+    limits: HubLimits,
+    state: Mutex<LaneState>,
+    wake: Notify,
+}
+
+#[derive(Debug)]
+struct LaneState {
+    control: VecDeque<Arc<Statistics>>,
+    closed: Option<String>,
+    phase: Phase,
+
+    data: VecDeque<Arc<PathBatch>>,
+    data_bytes: usize,
+    budget: Budget,
+    gap: Gap,
+    /// Reports the gap even though no batch gets through.
+    gap_is_due: bool,
+
+    film: Option<FilmProgress>,
+    newer_film: Option<NumberedFilm>,
+    /// Whose turn it is when both film and paths wait.
+    film_was_last: bool,
+
+    paths_sent: u64,
+    paths_dropped: u64,
+}
+
+/// How far the viewer is into the session.
+#[derive(Clone, Copy, Debug)]
+enum Phase {
+    /// It is being sent the film as it was when the viewer came.
+    SnapshotFilm,
+    /// Only the end of the snapshot is still to be announced.
+    SnapshotEnd,
+    /// It gets what is new.
+    Live,
+}
+
+/// A snapshot on its way: rows before `next_row` are sent.
+#[derive(Debug)]
+struct FilmProgress {
+    film: NumberedFilm,
+    next_row: u32,
+}
+
+impl Lane {
+    /// Empty lanes of viewer number `session`.
+    pub(super) fn new(session: u64, limits: HubLimits, budget: u64, now: Instant) -> Self {
+        let state = LaneState {
+            control: VecDeque::new(),
+            closed: None,
+            phase: Phase::Live,
+            data: VecDeque::new(),
+            data_bytes: 0,
+            budget: Budget::new(or_default(budget, limits), now),
+            gap: Gap::default(),
+            gap_is_due: false,
+            film: None,
+            newer_film: None,
+            film_was_last: false,
+            paths_sent: 0,
+            paths_dropped: 0,
+        };
+        Self { session, limits, state: Mutex::new(state), wake: Notify::new() }
+    }
+
+    /// The viewer's number.
+    pub(super) fn session(&self) -> u64 {
+        self.session
+    }
+
+    /// Resolves when something was put into the lanes since the last look.
+    pub(super) fn filled(&self) -> Notified<'_> {
+        self.wake.notified()
+    }
+
+    /// Lays out the snapshot that a new viewer gets before anything else.
+    pub(super) fn begin_snapshot(
+        &self,
+        statistics: Option<Arc<Statistics>>,
+        film: Option<NumberedFilm>,
+    ) {
+        let mut state = self.state();
+        state.control.extend(statistics);
+        state.film = film.map(|film| FilmProgress { film, next_row: 0 });
+        state.phase = if state.film.is_some() { Phase::SnapshotFilm } else { Phase::SnapshotEnd };
+    }
+
+    /// Changes the data budget, in bytes a second.
+    pub(super) fn set_budget(&self, budget: u64, now: Instant) {
+        self.state().budget = Budget::new(or_default(budget, self.limits), now);
+        self.wake.notify_one();
+    }
+
+    /// Marks half a second: an open gap is due, and so are statistics if there are any. Closes the
+    /// lanes where the control lane is full.
+    pub(super) fn tick(&self, statistics: Option<&Arc<Statistics>>) {
+        let mut state = self.state();
+        state.gap_is_due = true;
+        if state.control.len() < self.limits.control_messages {
+            state.control.extend(statistics.map(Arc::clone));
+        } else if state.closed.is_none() {
+            let reason = format!(
+                "the viewer read too slowly: {} control messages wait for it",
+                state.control.len()
+            );
+            state.close(reason);
+        }
+        drop(state);
+        self.wake.notify_one();
+    }
+
+    /// Puts a batch into the data lane, where the oldest make room for it.
+    pub(super) fn push_paths(&self, batch: Arc<PathBatch>) {
+        let mut state = self.state();
+        let budgeted = state.budget.bytes_per_second() * LANE_SECONDS;
+        let limit = (budgeted as usize).max(MIN_LANE_BYTES).min(self.limits.lane_bytes);
+        state.push_paths(batch, limit);
+        drop(state);
+        self.wake.notify_one();
+    }
+
+    /// Adds to the gap what was lost before it reached the lanes.
+    pub(super) fn push_lost(&self, lost: Gap) {
+        self.state().add_to_gap(lost);
+    }
+
+    /// Puts a snapshot of the film into the data lane; the newest waits for the one on its way.
+    pub(super) fn push_film(&self, film: NumberedFilm) {
+        let mut state = self.state();
+        if state.film.is_none() {
+            state.film = Some(FilmProgress { film, next_row: 0 });
+        } else {
+            state.newer_film = Some(film);
+        }
+        drop(state);
+        self.wake.notify_one();
+    }
+
+    /// Takes what is to be sent next.
+    pub(super) fn take(&self, viewers: u32, now: Instant) -> Taken {
+        self.state().take(viewers, now)
+    }
+
+    fn state(&self) -> MutexGuard<'_, LaneState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn or_default(budget: u64, limits: HubLimits) -> u64 {
+    if budget == 0 { limits.default_budget } else { budget }
+}
+
+impl LaneState {
+    fn take(&mut self, viewers: u32, now: Instant) -> Taken {
+        if let Some(reason) = &self.closed {
+            return Taken::Now(Delivery::Closed(reason.clone()));
+        }
+        if let Some(statistics) = self.control.pop_front() {
+            return Taken::Now(Delivery::Statistics(Statistics {
+                viewers,
+                paths_sent: self.paths_sent,
+                paths_dropped: self.paths_dropped,
+                queued_bytes: self.data_bytes as u64,
+                ..Statistics::clone(&statistics)
+            }));
+        }
+        match self.phase {
+            // The budget is ignored: a viewer is to have the snapshot within a second.
+            Phase::SnapshotFilm => {
+                let rows = self.take_rows();
+                if self.film.as_ref().is_none_or(|film| film.next_row == 0) {
+                    self.phase = Phase::SnapshotEnd;
+                }
+                rows.map_or(Taken::Later(None), Taken::Film)
+            }
+            Phase::SnapshotEnd => {
+                self.phase = Phase::Live;
+                Taken::Now(Delivery::SnapshotEnd)
+            }
+            Phase::Live => self.take_data(now),
+        }
+    }
+
+    fn take_data(&mut self, now: Instant) -> Taken {
+        let wait = self.budget.wait(now);
+        let batch_is_next = wait.is_none() && !self.data.is_empty();
+        if (batch_is_next || self.gap_is_due) && self.gap != Gap::default() {
+            self.gap_is_due = false;
+            return Taken::Now(Delivery::Gap(std::mem::take(&mut self.gap)));
+        }
+        if wait.is_some() && (self.film.is_some() || !self.data.is_empty()) {
+            return Taken::Later(wait);
+        }
+        let prefers_paths = self.film_was_last && !self.data.is_empty();
+        if !prefers_paths && let Some(order) = self.take_rows() {
+            self.film_was_last = true;
+            self.budget.spend(order.byte_len());
+            return Taken::Film(order);
+        }
+        match self.data.pop_front() {
+            Some(batch) => {
+                self.film_was_last = false;
+                self.data_bytes -= batch.byte_len();
+                self.budget.spend(batch.byte_len());
+                self.paths_sent += batch.len() as u64;
+                Taken::Now(Delivery::Paths(batch))
+            }
+            None => Taken::Later(None),
+        }
+    }
+
+    fn take_rows(&mut self) -> Option<TileOrder> {
+        let progress = self.film.as_mut()?;
+        let frame = &progress.film.frame;
+        let (width, height) = (frame.width as usize, frame.height);
+        let rows = (TILE_BYTES / (PIXEL_BYTES * width.max(1))).max(1) as u32;
+        let first_row = progress.next_row;
+        let rows = rows.min(height - first_row);
+        let order = TileOrder { film: progress.film.clone(), first_row, rows };
+        progress.next_row += rows;
+        if progress.next_row >= height {
+            let next = self.newer_film.take();
+            self.film = next.map(|film| FilmProgress { film, next_row: 0 });
+        }
+        Some(order)
+    }
+
+    fn push_paths(&mut self, batch: Arc<PathBatch>, limit: usize) {
+        self.data_bytes += batch.byte_len();
+        self.data.push_back(batch);
+        while self.data_bytes > limit && self.data.len() > 1 {
+            let Some(oldest) = self.data.pop_front() else { break };
+            self.data_bytes -= oldest.byte_len();
+            self.add_to_gap(Gap {
+                batches: 1,
+                paths: oldest.len() as u64,
+                bytes: oldest.byte_len() as u64,
+            });
+        }
+    }
+
+    fn add_to_gap(&mut self, more: Gap) {
+        self.gap.batches += more.batches;
+        self.gap.paths += more.paths;
+        self.gap.bytes += more.bytes;
+        self.paths_dropped += more.paths;
+    }
+
+    /// Ends the session, and lets go of what will not be sent any more.
+    fn close(&mut self, reason: String) {
+        self.closed = Some(reason);
+        self.control.clear();
+        self.data.clear();
+        self.data_bytes = 0;
+        self.film = None;
+        self.newer_film = None;
+    }
+}
+
+impl TileOrder {
+    fn byte_len(&self) -> usize {
+        self.rows as usize * self.film.frame.width as usize * PIXEL_BYTES
+    }
+
+    /// The rows as they travel. A pixel that is not finite is sent as black: the picture shows the
+    /// hole, and every other pixel arrives.
+    pub(super) fn tile(&self) -> FilmTile {
+        let frame = &self.film.frame;
+        let width = frame.width as usize;
+        let (skipped, taken) = (self.first_row as usize * width, self.rows as usize * width);
+        let mut rgb: Vec<f32> = frame
+            .pixels
+            .iter()
+            .skip(skipped)
+            .take(taken)
+            .flat_map(|pixel| pixel.to_f32())
+            .map(|channel| if channel.is_finite() { channel } else { 0.0 })
+            .collect();
+        rgb.resize(3 * taken, 0.0);
+        FilmTile {
+            sequence: self.film.sequence,
+            width: frame.width,
+            height: frame.height,
+            first_row: self.first_row,
+            steps: frame.steps,
+            rgb,
+        }
+    }
+}

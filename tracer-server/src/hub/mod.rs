@@ -1,0 +1,263 @@
+//! Where chains and viewers meet, and the only place where they do.
+//!
+//! Producers hand over paths, film and statistics without ever waiting: they push into two bounded
+//! queues, and what finds them full is counted as lost. The [`Pump`], a task, empties the queues and
+//! lays everything into the lanes of each viewer. A viewer has two: the control lane is lossless,
+//! goes first, and a viewer that lets it fill is disconnected; the data lane is lossy and bounded in
+//! bytes, drops its oldest batch, and reports the loss as a [`common::Gap`].
+//!
+//! No lock that a viewer can hold is ever taken by a producer.
+
+mod budget;
+mod lane;
+mod pump;
+
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use common::{FilmFrame, Gap, PathBatch, Statistics};
+use thiserror::Error;
+use tokio::sync::mpsc;
+use tokio::time::{Instant, timeout_at};
+
+pub use lane::Delivery;
+pub use pump::Pump;
+
+use lane::{Lane, Taken};
+
+/// What bounds the hub's queues.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HubLimits {
+    /// Most viewers at a time.
+    pub viewers: usize,
+    /// Most bytes of paths that wait for the pump.
+    pub ingress_bytes: usize,
+    /// Most bytes of paths that wait for one viewer.
+    pub lane_bytes: usize,
+    /// Most control messages that wait for one viewer; at two a second, half a minute of them.
+    pub control_messages: usize,
+    /// Bytes of data a second for a viewer that names no budget.
+    pub default_budget: u64,
+}
+
+impl Default for HubLimits {
+    fn default() -> Self {
+        Self {
+            viewers: 16,
+            ingress_bytes: 8 << 20,
+            lane_bytes: 4 << 20,
+            control_messages: 64,
+            default_budget: 16 << 20,
+        }
+    }
+}
+
+/// Most path batches that wait for the pump, whatever their size.
+const INGRESS_BATCHES: usize = 512;
+/// Most snapshots of film and statistics that wait for the pump.
+const INGRESS_NEWS: usize = 16;
+
+/// The refusal of one viewer too many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("{limit} viewers are connected, which is as many as this daemon serves; try again later")]
+pub struct HubFull {
+    /// Most viewers at a time.
+    pub limit: usize,
+}
+
+/// A handle for producers and viewers; cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Hub {
+    shared: Arc<Shared>,
+    paths: mpsc::Sender<PathBatch>,
+    news: mpsc::Sender<News>,
+}
+
+/// What producers and the pump share without locks, and viewers and the pump behind one.
+#[derive(Debug)]
+struct Shared {
+    limits: HubLimits,
+    viewers: AtomicUsize,
+    waiting_bytes: AtomicUsize,
+    lost: Lost,
+    /// Never touched by producers.
+    registry: Mutex<Registry>,
+}
+
+/// What did not fit into the queue to the pump.
+#[derive(Debug, Default)]
+struct Lost {
+    batches: AtomicU64,
+    paths: AtomicU64,
+    bytes: AtomicU64,
+}
+
+/// What waits for the pump besides paths.
+#[derive(Debug)]
+enum News {
+    Film(Arc<FilmFrame>),
+    Statistics(Arc<Statistics>),
+}
+
+/// The viewers, and what a new one is shown at once.
+#[derive(Debug, Default)]
+struct Registry {
+    sessions: u64,
+    lanes: Vec<Arc<Lane>>,
+    film: Option<NumberedFilm>,
+    statistics: Option<Arc<Statistics>>,
+}
+
+/// A snapshot of the film under its sequence number.
+#[derive(Clone, Debug)]
+struct NumberedFilm {
+    sequence: u64,
+    frame: Arc<FilmFrame>,
+}
+
+impl Hub {
+    /// A hub, and the pump that some task must [`Pump::run`] for anything to arrive.
+    pub fn new(limits: HubLimits) -> (Self, Pump) {
+        let (paths, path_queue) = mpsc::channel(INGRESS_BATCHES);
+        let (news, news_queue) = mpsc::channel(INGRESS_NEWS);
+        let shared = Arc::new(Shared {
+            limits,
+            viewers: AtomicUsize::new(0),
+            waiting_bytes: AtomicUsize::new(0),
+            lost: Lost::default(),
+            registry: Mutex::default(),
+        });
+        let pump = Pump::new(Arc::clone(&shared), path_queue, news_queue);
+        (Self { shared, paths, news }, pump)
+    }
+
+    /// True while anyone would see published paths; producers need not make any otherwise.
+    pub fn wants_paths(&self) -> bool {
+        self.viewers() > 0
+    }
+
+    /// Viewers connected.
+    pub fn viewers(&self) -> usize {
+        self.shared.viewers.load(Ordering::Relaxed)
+    }
+
+    /// Hands over a batch, or counts it as lost where the pump is behind. Never waits.
+    pub fn publish_paths(&self, batch: PathBatch) {
+        if batch.is_empty() || !self.wants_paths() {
+            return;
+        }
+        let size = Gap { batches: 1, paths: batch.len() as u64, bytes: batch.byte_len() as u64 };
+        let waiting = self.shared.waiting_bytes.fetch_add(batch.byte_len(), Ordering::Relaxed);
+        let fits = waiting == 0 || waiting + batch.byte_len() <= self.shared.limits.ingress_bytes;
+        if !fits || self.paths.try_send(batch).is_err() {
+            self.shared.waiting_bytes.fetch_sub(size.bytes as usize, Ordering::Relaxed);
+            self.shared.lost.add(size);
+        }
+    }
+
+    /// Hands over a snapshot of the film; the newest one replaces those not yet sent. Never waits.
+    pub fn publish_film(&self, frame: Arc<FilmFrame>) {
+        let area = frame.width as usize * frame.height as usize;
+        debug_assert_eq!(frame.pixels.len(), area, "a film has as many pixels as it says");
+        self.publish_news(News::Film(frame));
+    }
+
+    /// Hands over statistics; viewers are sent the newest twice a second. Never waits.
+    pub fn publish_statistics(&self, statistics: Arc<Statistics>) {
+        self.publish_news(News::Statistics(statistics));
+    }
+
+    fn publish_news(&self, news: News) {
+        // Where the pump is that far behind, a later snapshot will do.
+        if self.news.try_send(news).is_err() {
+            tracing::trace!("a snapshot was skipped, the pump is behind");
+        }
+    }
+
+    /// Adds a viewer with a data budget in bytes a second (0 for the default). Its first deliveries
+    /// are the snapshot.
+    pub fn subscribe(&self, budget: u64) -> Result<Subscription, HubFull> {
+        let limits = self.shared.limits;
+        let mut registry = self.shared.registry();
+        if registry.lanes.len() >= limits.viewers {
+            return Err(HubFull { limit: limits.viewers });
+        }
+        registry.sessions += 1;
+        let lane = Arc::new(Lane::new(registry.sessions, limits, budget, Instant::now()));
+        lane.begin_snapshot(registry.statistics.clone(), registry.film.clone());
+        registry.lanes.push(Arc::clone(&lane));
+        self.shared.viewers.store(registry.lanes.len(), Ordering::Relaxed);
+        drop(registry);
+        Ok(Subscription { shared: Arc::clone(&self.shared), lane })
+    }
+}
+
+impl Shared {
+    fn registry(&self) -> MutexGuard<'_, Registry> {
+        self.registry.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Lost {
+    fn add(&self, gap: Gap) {
+        self.batches.fetch_add(gap.batches, Ordering::Relaxed);
+        self.paths.fetch_add(gap.paths, Ordering::Relaxed);
+        self.bytes.fetch_add(gap.bytes, Ordering::Relaxed);
+    }
+
+    fn take(&self) -> Gap {
+        Gap {
+            batches: self.batches.swap(0, Ordering::Relaxed),
+            paths: self.paths.swap(0, Ordering::Relaxed),
+            bytes: self.bytes.swap(0, Ordering::Relaxed),
+        }
+    }
+}
+
+/// One viewer's end of the hub; leaving it unsubscribes.
+#[derive(Debug)]
+pub struct Subscription {
+    shared: Arc<Shared>,
+    lane: Arc<Lane>,
+}
+
+impl Subscription {
+    /// A number for this viewer, unique while the hub lives.
+    pub fn session(&self) -> u64 {
+        self.lane.session()
+    }
+
+    /// Changes the data budget, in bytes a second; 0 for the default.
+    pub fn set_budget(&self, budget: u64) {
+        self.lane.set_budget(budget, Instant::now());
+    }
+
+    /// Waits for what goes to the viewer next. Nothing is lost when the wait is abandoned.
+    pub async fn next(&self) -> Delivery {
+        loop {
+            // Holds a permit if the lane was filled since, so that no wake-up is missed.
+            let filled = self.lane.filled();
+            let viewers = self.shared.viewers.load(Ordering::Relaxed);
+            match self.lane.take(viewers as u32, Instant::now()) {
+                Taken::Now(delivery) => return delivery,
+                Taken::Film(order) => return Delivery::Film(order.tile()),
+                Taken::Later(None) => filled.await,
+                // Whether time or news ended the wait, the lane is looked at again.
+                Taken::Later(Some(instant)) => {
+                    drop(timeout_at(instant, filled).await);
+                }
+            }
+        }
+    }
+}
+
+impl Drop for Subscription {
+    fn drop(&mut self) {
+        let mut registry = self.shared.registry();
+        registry.lanes.retain(|lane| !Arc::ptr_eq(lane, &self.lane));
+        self.shared.viewers.store(registry.lanes.len(), Ordering::Relaxed);
+    }
+}
+
+#[cfg(test)]
+mod tests;
