@@ -83,6 +83,14 @@ mod tests {
     }
 
     #[test]
+    fn the_distance_is_measured_on_both_sides() {
+        let distance =
+            |samples: &[f64]| kolmogorov_test(samples, |x| x).expect("samples").statistic;
+        assert_eq!(distance(&[0.5, 0.9]), 0.5, "samples too large");
+        assert_eq!(distance(&[0.1, 0.5]), 0.5, "samples too small");
+    }
+
+    #[test]
     fn nonsense_is_refused() {
         assert_eq!(kolmogorov_test(&[], |x| x), None, "no samples");
         assert_eq!(kolmogorov_test(&[0.5, f64::NAN], |x| x), None, "NaN sample");
