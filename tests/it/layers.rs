@@ -27,6 +27,7 @@ const TRANSPORT: &[&str] = &[
     "tracer-server/src/mutation",
     "tracer-server/src/chain",
     "tracer-server/src/integrator",
+    "tracer-server/src/parallel",
     "tracer-server/src/film",
     "tracer-server/src/engine",
 ];

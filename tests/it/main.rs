@@ -1,6 +1,6 @@
 //! Everything that takes more than one crate to test, in one binary.
 //!
-//! `workspace` reads the repository; the first few tests below keep it tidy. To add a test, add a
+//! `workspace` reads the repository; the first four tests below keep it tidy. To add a test, add a
 //! file with its `#[test]` functions and one line here.
 
 mod citations;
