@@ -9,6 +9,7 @@ mod color;
 mod event;
 mod id;
 mod mesh;
+mod metric;
 mod session;
 
 pub use batch::{
@@ -20,6 +21,7 @@ pub use color::Rgb;
 pub use event::{Event, VertexKind};
 pub use id::{ChainId, MaterialId, PathId, StrategyId};
 pub use mesh::{MaterialInfo, SceneFrame, SceneMesh};
+pub use metric::{mean_ratio, relative_mse};
 pub use session::{
     ChainTotals, FailureCount, FilmFrame, FilmTile, Gap, Role, Statistics, StrategyStatistics,
     Welcome,

@@ -2,35 +2,6 @@
 
 use crate::{Accumulator, Suite, welch_z};
 
-/// Relative mean squared error of `image` against `reference`.
-///
-/// Per pixel `|I - R|^2 / (|R|^2 + 0.01 mean |R|^2)`, averaged over the pixels: noise counts alike
-/// in bright and dark parts, and the second term keeps black pixels from ruling the sum. NaN when
-/// the sizes differ, there are no pixels, or any value is NaN. For an unbiased renderer it falls
-/// in inverse proportion to the time spent.
-pub fn relative_mse(image: &[[f64; 3]], reference: &[[f64; 3]]) -> f64 {
-    if image.len() != reference.len() {
-        return f64::NAN;
-    }
-    let pixels = reference.len() as f64;
-    let square = |[r, g, b]: [f64; 3]| r * r + g * g + b * b;
-    let floor = 0.01 * reference.iter().map(|pixel| square(*pixel)).sum::<f64>() / pixels;
-    let error = |(i, r): (&[f64; 3], &[f64; 3])| {
-        square([i[0] - r[0], i[1] - r[1], i[2] - r[2]]) / (square(*r) + floor)
-    };
-    image.iter().zip(reference).map(error).sum::<f64>() / pixels
-}
-
-/// Sum of all channels of `image` over that of `reference`: one when no energy is lost.
-///
-/// NaN when the sizes differ or both are black.
-pub fn mean_ratio(image: &[[f64; 3]], reference: &[[f64; 3]]) -> f64 {
-    if image.len() != reference.len() {
-        return f64::NAN;
-    }
-    image.iter().flatten().sum::<f64>() / reference.iter().flatten().sum::<f64>()
-}
-
 /// Means over squares of `block` pixels, row by row; squares cut by the border are averaged over
 /// what is left of them.
 ///
@@ -86,36 +57,6 @@ mod tests {
     use rand_xoshiro::Xoshiro256PlusPlus;
 
     use super::*;
-
-    const GREY: [f64; 3] = [0.5; 3];
-
-    #[test]
-    fn relative_error_is_relative() {
-        let reference = [GREY, GREY];
-        assert_eq!(relative_mse(&reference, &reference), 0.0, "a picture equals itself");
-        let brighter = reference.map(|pixel| pixel.map(|c| c * 1.1));
-        let error = relative_mse(&brighter, &reference);
-        assert!((error - 0.01 / 1.01).abs() < 1e-12, "ten per cent off: {error}");
-        let scaled = relative_mse(&brighter.map(|p| p.map(|c| c * 8.0)), &[[4.0; 3]; 2]);
-        assert!((scaled - error).abs() < 1e-12, "exposure does not matter: {scaled}");
-    }
-
-    #[test]
-    fn a_firefly_and_a_nan_are_seen() {
-        let mut image = [GREY; 16];
-        image[5] = [500.0; 3];
-        assert!(relative_mse(&image, &[GREY; 16]) > 1e3, "one wild pixel among sixteen");
-        image[5] = [f64::NAN; 3];
-        assert!(relative_mse(&image, &[GREY; 16]).is_nan(), "NaN is not averaged away");
-        assert!(relative_mse(&image, &[GREY; 15]).is_nan(), "sizes differ");
-    }
-
-    #[test]
-    fn lost_energy_shows_in_the_ratio() {
-        let ratio = mean_ratio(&[[0.9; 3]; 4], &[[1.0; 3]; 4]);
-        assert!((ratio - 0.9).abs() < 1e-12, "{ratio}");
-        assert!(mean_ratio(&[[0.0; 3]], &[[0.0; 3]]).is_nan(), "black against black says nothing");
-    }
 
     #[test]
     fn blocks_average_what_they_hold() {

@@ -17,7 +17,7 @@ mod z_score;
 
 pub use accumulator::Accumulator;
 pub use chi_square::{ChiSquare, ChiSquareError, chi_square_test, pool_cells};
-pub use image::{block_means, mean_ratio, relative_mse, z_map};
+pub use image::{block_means, z_map};
 pub use kolmogorov::{Kolmogorov, kolmogorov_test};
 pub use suite::{Suite, Verdict};
 pub use z_score::{ZScore, p_limit, welch_z, z_limit};

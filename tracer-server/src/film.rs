@@ -31,6 +31,11 @@ impl Film {
         &self.pixels
     }
 
+    /// The pixels, row by row from the top left.
+    pub fn into_pixels(self) -> Vec<Rgb> {
+        self.pixels
+    }
+
     /// Adds `color` to the pixel with index `pixel`.
     #[inline]
     pub fn splat(&mut self, pixel: usize, color: Rgb) {

@@ -2,11 +2,14 @@
 
 pub mod bsdf;
 pub mod chain;
+pub mod engine;
 pub mod film;
 pub mod hub;
+pub mod image_file;
 pub mod integrator;
 pub mod math;
 pub mod mutation;
 pub mod parallel;
 pub mod path;
+pub mod render;
 pub mod scene;

@@ -35,7 +35,7 @@ impl Dielectric {
 
 /// Fresnel reflectance of unpolarised light that arrives at `cos_i > 0` on a boundary with relative
 /// index `eta` (beyond over this side). One at grazing incidence and at total internal reflection.
-pub fn fresnel(cos_i: f64, eta: f64) -> f64 {
+fn fresnel(cos_i: f64, eta: f64) -> f64 {
     if eta == 1.0 {
         return 0.0;
     }

@@ -160,6 +160,7 @@ impl Bidirectional {
 
 impl Mutation for Bidirectional {
     type Move = Ends;
+    const NAME: &'static str = "bidirectional";
 
     fn applicable(&self, _: &Path) -> bool {
         true

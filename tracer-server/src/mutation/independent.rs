@@ -49,6 +49,7 @@ impl Independent {
 impl Mutation for Independent {
     /// Nothing of the old path matters.
     type Move = ();
+    const NAME: &'static str = "independent";
 
     fn applicable(&self, _: &Path) -> bool {
         true

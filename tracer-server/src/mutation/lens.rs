@@ -98,6 +98,7 @@ pub(super) fn event_probability(x: &Path, d: usize) -> f64 {
 impl Mutation for LensPerturbation {
     /// Index of the first diffuse vertex seen from the lens: `d`.
     type Move = usize;
+    const NAME: &'static str = "lens";
 
     /// The vertex behind the first diffuse one must be connectable, unless the light itself is seen.
     fn applicable(&self, x: &Path) -> bool {

@@ -3,7 +3,7 @@
 use common::Camera;
 use serde::{Deserialize, Serialize};
 
-use super::{Bidirectional, Independent, LensPerturbation, Strategy};
+use super::{Bidirectional, Independent, LensPerturbation, Mutation as _, Strategy};
 use crate::math::Rng;
 use crate::path::Path;
 
@@ -21,6 +21,21 @@ pub struct StrategyWeights {
 impl Default for StrategyWeights {
     fn default() -> Self {
         Self { bidirectional: 0.5, independent: 0.05, lens: 0.45 }
+    }
+}
+
+impl StrategyWeights {
+    /// Names of the strategies that a mixture with these weights has, in its order.
+    pub fn names(&self) -> Vec<String> {
+        [
+            (self.bidirectional, Bidirectional::NAME),
+            (self.independent, Independent::NAME),
+            (self.lens, LensPerturbation::NAME),
+        ]
+        .into_iter()
+        .filter(|(weight, _)| *weight > 0.0)
+        .map(|(_, name)| name.to_owned())
+        .collect()
     }
 }
 

@@ -28,6 +28,9 @@ pub trait Mutation: Debug + Send + Sync {
     /// The discrete choices behind one proposal.
     type Move: Copy + Debug;
 
+    /// A name for tables, options and viewers.
+    const NAME: &'static str;
+
     /// True when the strategy can do something with `x`.
     fn applicable(&self, x: &Path) -> bool;
 
@@ -107,11 +110,10 @@ macro_rules! strategy {
 impl Strategy {
     /// A name for tables, options and viewers.
     pub fn name(&self) -> &'static str {
-        match self {
-            Self::Bidirectional(_) => "bidirectional",
-            Self::Independent(_) => "independent",
-            Self::Lens(_) => "lens",
+        fn name<M: Mutation>(_: &M) -> &'static str {
+            M::NAME
         }
+        strategy!(self, m => name(m))
     }
 
     /// True when it can do something with `x`.

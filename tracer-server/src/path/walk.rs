@@ -67,7 +67,7 @@ pub fn emit(at: &Vertex, rng: &mut Rng) -> DVec3 {
 /// Walks from `start` in `direction` and appends exactly `count` vertices to `out`, in the order of
 /// the walk. No Russian roulette; the event of the last vertex stays open.
 #[inline]
-pub fn walk(
+pub(super) fn walk(
     scene: &Tracer<'_>,
     start: &Vertex,
     mut direction: DVec3,

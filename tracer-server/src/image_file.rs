@@ -1,0 +1,189 @@
+//! Images on disk: EXR with metadata, and PNG for people.
+
+use std::path::Path;
+
+use common::Rgb;
+use exr::prelude::{
+    AttributeValue, Encoding, Image, Layer, LayerAttributes, SpecificChannels, Text, Vec2,
+    WritableImage as _, read_first_rgba_layer_from_file,
+};
+use image::{ImageBuffer, ImageFormat, Rgb as Pixel8};
+use thiserror::Error;
+
+use crate::film::Film;
+
+/// Widest and highest image that is read, in pixels.
+const MAX_SIDE: usize = 1 << 15;
+
+/// Why an image could not be read or written.
+#[derive(Debug, Error)]
+pub enum ImageError {
+    /// The name does not tell a format.
+    #[error("`{0}` does not tell its format; end the name in .exr or .png")]
+    UnknownFormat(String),
+    /// The EXR library refused.
+    #[error("`{file}`: {source}")]
+    Exr {
+        /// The file.
+        file: String,
+        /// What it said.
+        source: exr::error::Error,
+    },
+    /// The PNG library refused.
+    #[error("`{file}`: {source}")]
+    Png {
+        /// The file.
+        file: String,
+        /// What it said.
+        source: image::ImageError,
+    },
+    /// Too large to be an image of ours.
+    #[error("`{0}` is larger than {MAX_SIDE} pixels a side")]
+    TooLarge(String),
+}
+
+/// What an image file may hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Linear radiance in 32-bit floats, with metadata.
+    Exr,
+    /// Exposed, sRGB-encoded and rounded to eight bits.
+    Png,
+}
+
+impl Format {
+    /// The format that a file's name asks for.
+    pub fn of(path: &Path) -> Result<Self, ImageError> {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+        match extension.to_ascii_lowercase().as_str() {
+            "exr" => Ok(Self::Exr),
+            "png" => Ok(Self::Png),
+            _ => Err(ImageError::UnknownFormat(path.display().to_string())),
+        }
+    }
+}
+
+/// Writes `image` in the format of the file's name. `metadata` goes into EXR headers.
+pub fn write(path: &Path, image: &Film, metadata: &[(String, String)]) -> Result<(), ImageError> {
+    match Format::of(path)? {
+        Format::Exr => write_exr(path, image, metadata),
+        Format::Png => write_png(path, image),
+    }
+}
+
+fn write_exr(path: &Path, image: &Film, metadata: &[(String, String)]) -> Result<(), ImageError> {
+    let (width, height) = (image.width() as usize, image.height() as usize);
+    let channels = SpecificChannels::rgb(|Vec2(x, y): Vec2<usize>| {
+        let [r, g, b] = image.pixels()[y * width + x].to_f32();
+        (r, g, b)
+    });
+    let mut attributes = LayerAttributes::named("");
+    attributes.software_name = Some(Text::from("Lvis"));
+    for (key, value) in metadata {
+        let (key, value) = (Text::from(key.as_str()), Text::from(value.as_str()));
+        attributes.other.insert(key, AttributeValue::Text(value));
+    }
+    let layer = Layer::new((width, height), attributes, Encoding::SMALL_LOSSLESS, channels);
+    Image::from_layer(layer)
+        .write()
+        .to_file(path)
+        .map_err(|source| ImageError::Exr { file: path.display().to_string(), source })
+}
+
+/// The exposure that brings the brighter parts of an image just below white: one over its 98th
+/// percentile of luminance, rounded to a power of two so that images of one scene look alike.
+fn auto_exposure(image: &Film) -> f64 {
+    let mut luminances: Vec<f64> = image.pixels().iter().map(|p| p.luminance()).collect();
+    luminances.retain(|l| l.is_finite() && *l > 0.0);
+    luminances.sort_unstable_by(f64::total_cmp);
+    match luminances.get(luminances.len() * 98 / 100) {
+        Some(&bright) => (0.9 / bright).log2().floor().exp2(),
+        None => 1.0,
+    }
+}
+
+fn encode_srgb(linear: f64) -> u8 {
+    let encoded =
+        if linear <= 0.0031308 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    (encoded.clamp(0.0, 1.0) * 255.0).round() as u8
+}
+
+fn write_png(path: &Path, image: &Film) -> Result<(), ImageError> {
+    let exposure = auto_exposure(image);
+    let mut bytes = ImageBuffer::new(image.width(), image.height());
+    for (pixel, &Rgb { r, g, b }) in bytes.pixels_mut().zip(image.pixels()) {
+        *pixel = Pixel8([r, g, b].map(|c| encode_srgb(c * exposure)));
+    }
+    bytes
+        .save_with_format(path, ImageFormat::Png)
+        .map_err(|source| ImageError::Png { file: path.display().to_string(), source })
+}
+
+/// Reads the first layer of an EXR file.
+pub fn read_exr(path: &Path) -> Result<Film, ImageError> {
+    let loaded = read_first_rgba_layer_from_file(
+        path,
+        |size, _| {
+            let fits = size.0 <= MAX_SIDE && size.1 <= MAX_SIDE;
+            fits.then(|| Film::new(size.0 as u32, size.1 as u32))
+        },
+        |film, Vec2(x, y), (r, g, b, _): (f32, f32, f32, f32)| {
+            if let Some(film) = film {
+                film.splat(y * film.width() as usize + x, Rgb::from([r, g, b]));
+            }
+        },
+    );
+    let file = path.display().to_string();
+    let image = loaded.map_err(|source| ImageError::Exr { file: file.clone(), source })?;
+    image.layer_data.channel_data.pixels.ok_or(ImageError::TooLarge(file))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gradient() -> Film {
+        let mut film = Film::new(5, 3);
+        for i in 0..15 {
+            film.splat(i, Rgb::new(i as f64, 0.25, 1e-3 * i as f64));
+        }
+        film
+    }
+
+    #[test]
+    fn exr_keeps_pixels_and_metadata() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("gradient.exr");
+        let metadata = [("lvis.seed".to_owned(), "7".to_owned())];
+        write(&path, &gradient(), &metadata).expect("an EXR file is written");
+        let back = read_exr(&path).expect("and read");
+        for (a, b) in back.pixels().iter().zip(gradient().pixels()) {
+            assert_eq!(a.to_f32(), b.to_f32(), "pixels survive");
+        }
+        let meta = exr::meta::MetaData::read_from_file(&path, false).expect("the header is read");
+        let seed = meta.headers[0].own_attributes.other.get(&Text::from("lvis.seed"));
+        assert_eq!(seed, Some(&AttributeValue::Text(Text::from("7"))), "metadata survives");
+    }
+
+    #[test]
+    fn png_is_exposed_to_be_seen() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("dim.png");
+        let mut film = Film::new(4, 4);
+        (0..16).for_each(|i| film.splat(i, Rgb::grey(1e-6)));
+        write(&path, &film, &[]).expect("a PNG file is written");
+        let back = image::open(&path).expect("and read").to_rgb8();
+        assert!(back.get_pixel(1, 1).0[0] > 150, "a dim image is made visible");
+    }
+
+    #[test]
+    fn what_is_no_image_is_refused() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("noise.exr");
+        std::fs::write(&path, b"this is no image").expect("a file is written");
+        assert!(read_exr(&path).is_err(), "noise is no EXR");
+        assert!(read_exr(&folder.path().join("missing.exr")).is_err(), "a missing file");
+        let odd = write(&folder.path().join("a.bmp"), &gradient(), &[]);
+        assert!(matches!(odd, Err(ImageError::UnknownFormat(_))), "an unknown format");
+    }
+}
