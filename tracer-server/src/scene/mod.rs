@@ -2,15 +2,33 @@
 
 mod accel;
 mod build;
+pub mod builtin;
 mod description;
+mod diagnostic;
 mod emitter;
+#[cfg(test)]
+mod examples;
 mod features;
+mod file;
 #[cfg(test)]
 pub(crate) mod fixtures;
 mod hash;
+pub mod load;
+#[cfg(test)]
+mod malformed;
+mod mtl;
+mod mtl_text;
+mod obj;
+mod obj_text;
+mod origin;
 mod preview;
+mod shape;
 mod surface;
+mod text;
+mod texture;
 mod tracer;
+mod validate;
+mod viewpoint;
 
 use common::{Camera, Event, Rgb, SceneFrame};
 use glam::DVec3;

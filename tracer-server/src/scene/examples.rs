@@ -1,0 +1,151 @@
+//! The built-in scenes and real scenes made by others must load as their authors meant them.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use common::Rgb;
+
+use super::BsdfDescription;
+use super::builtin::{BUILTINS, Builtin};
+use super::load::{Loaded, load};
+
+fn triangles(loaded: &Loaded) -> usize {
+    loaded.description.meshes.iter().map(|mesh| mesh.triangles.len()).sum()
+}
+
+fn bsdf(loaded: &Loaded, name: &str) -> BsdfDescription {
+    let material = loaded.description.materials.iter().find(|m| m.name == name);
+    material.unwrap_or_else(|| panic!("there is no material {name}")).bsdf
+}
+
+#[test]
+fn every_built_in_scene_loads_without_a_warning() {
+    for builtin in BUILTINS {
+        let loaded = load(builtin.name).unwrap_or_else(|error| panic!("{error}"));
+        assert!(loaded.warnings.is_empty(), "{}: {:?}", builtin.name, loaded.warnings);
+        assert_eq!(loaded.description.name, builtin.name);
+        let summary = builtin.summary().expect("parsed");
+        assert!((20..80).contains(&summary.len()), "{}: `{summary}`", builtin.name);
+    }
+    assert_eq!(Builtin::find("nowhere"), None);
+}
+
+#[test]
+fn the_built_in_scenes_are_what_their_heads_say() {
+    let cornell = load("cornell").expect("loads");
+    assert_eq!(triangles(&cornell), 36);
+    assert!(cornell.description.spheres.is_empty());
+    let diffuse = |loaded: &Loaded| {
+        let mut materials = loaded.description.materials.iter();
+        materials.all(|m| matches!(m.bsdf, BsdfDescription::Lambert { .. }))
+    };
+    assert!(diffuse(&cornell) && diffuse(&load("door").expect("loads")), "matt only");
+    let caustic = load("caustic").expect("loads");
+    assert_eq!(caustic.description.spheres.len(), 1);
+    assert!(matches!(bsdf(&caustic, "glass"), BsdfDescription::Dielectric { eta: 1.5, .. }));
+    let mirrors = load("mirror-caustic").expect("loads");
+    assert!(matches!(bsdf(&mirrors, "silver"), BsdfDescription::Mirror { .. }));
+    let door = triangles(&load("door").expect("loads"));
+    assert!((50..400).contains(&door), "{door} triangles");
+}
+
+/// The folder of scenes made by others, or `None` with a printed line.
+#[expect(clippy::print_stderr, reason = "a test that is skipped must say so")]
+fn shared_scenes() -> Option<PathBuf> {
+    let shared = std::env::var_os("LVIS_SHARED")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"), PathBuf::from);
+    let scenes = shared.join("scenes");
+    if scenes.is_dir() {
+        return Some(scenes);
+    }
+    eprintln!("skipped: no scenes in {}; set LVIS_SHARED to their folder", scenes.display());
+    None
+}
+
+fn load_shared(scenes: &Path, name: &str) -> Loaded {
+    load(scenes.join(name).to_str().expect("UTF-8")).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn all_mcguire_boxes_load() {
+    let Some(scenes) = shared_scenes() else { return };
+    let boxes = [
+        ("Empty-CO", 12),
+        ("Empty-RG", 12),
+        ("Empty-White", 12),
+        ("Empty-Squashed", 12),
+        ("Glossy", 1_112),
+        ("Glossy-Floor", 1_112),
+        ("Mirror", 36),
+        ("Original", 36),
+        ("Sphere", 2_188),
+        ("Water", 7_088),
+    ];
+    for (name, count) in boxes {
+        let loaded = load_shared(&scenes, &format!("cornell-mcguire/CornellBox-{name}.obj"));
+        assert_eq!(triangles(&loaded), count, "{name}: {:?}", loaded.warnings);
+        let camera = loaded.description.camera;
+        let usual = glam::DVec3::new(0.0, 1.0, 6.8);
+        assert!((camera.origin - usual).length() < 0.3, "{name} is seen from {}", camera.origin);
+    }
+}
+
+#[test]
+fn a_mesh_without_a_light_is_refused() {
+    let Some(scenes) = shared_scenes() else { return };
+    let path = scenes.join("cornell-mcguire/water.obj");
+    let message = load(path.to_str().expect("UTF-8")).expect_err("no light").to_string();
+    assert!(message.contains("water.obj: the scene has no light: give some surface"), "{message}");
+}
+
+#[test]
+fn mirror_glass_and_water_are_recognised() {
+    let Some(scenes) = shared_scenes() else { return };
+    let water = load_shared(&scenes, "cornell-mcguire/CornellBox-Water.obj");
+    let eta = |name| match bsdf(&water, name) {
+        BsdfDescription::Dielectric { eta, .. } => eta,
+        other => panic!("{name} is {other:?}"),
+    };
+    assert_eq!((eta("water"), eta("rightSphere")), (1.33, 1.5));
+    let mirror = BsdfDescription::Mirror { reflectance: Rgb::grey(0.95) };
+    assert_eq!(bsdf(&water, "leftSphere"), mirror);
+    let original = load_shared(&scenes, "cornell-mcguire/CornellBox-Original.obj");
+    let light = original.description.materials.iter().find(|m| m.name == "light");
+    assert_eq!(light.map(|m| m.emission), Some(Rgb::new(17.0, 12.0, 4.0)));
+    assert!(original.warnings.is_empty(), "{:?}", original.warnings);
+}
+
+#[test]
+fn scenes_with_a_camera_file_load() {
+    let Some(scenes) = shared_scenes() else { return };
+    let expected = [
+        ("cornell-box-bitterli", 36, 1024),
+        ("veach-mis", 11_956, 720),
+        ("veach-bidir", 11_544, 1024),
+        ("water-caustic", 103_487, 1024),
+        ("staircase2", 31_247, 1024),
+    ];
+    for (name, count, height) in expected {
+        // A folder that holds one scene stands for it.
+        let loaded = load_shared(&scenes, name);
+        let dropped = loaded.warnings.iter().filter(|w| w.message.contains("without area")).count();
+        let complete = triangles(&loaded) == count || dropped > 0;
+        assert!(complete && triangles(&loaded) <= count, "{name}: {}", triangles(&loaded));
+        assert_eq!(loaded.description.height, height, "{name}");
+    }
+}
+
+#[test]
+#[expect(clippy::print_stderr, reason = "the loading time is worth knowing, but not a law")]
+fn a_scene_of_many_triangles_loads() {
+    let Some(scenes) = shared_scenes() else { return };
+    let start = Instant::now();
+    let ajar = load_shared(&scenes, "veach-ajar");
+    eprintln!("veach-ajar: {} triangles in {:.2?}", triangles(&ajar), start.elapsed());
+    for warning in &ajar.warnings {
+        eprintln!("{warning}");
+    }
+    assert!((382_000..=382_690).contains(&triangles(&ajar)), "{}", triangles(&ajar));
+    let means = ajar.warnings.iter().filter(|w| w.message.contains("mean colour")).count();
+    assert_eq!(means, 3, "three textures, one with a space in its name: {:?}", ajar.warnings);
+}

@@ -1,0 +1,196 @@
+//! OBJ and MTL files; the only file that names tobj.
+
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+use common::Rgb;
+use glam::DVec3;
+
+use super::description::{BsdfDescription, Material, Mesh};
+use super::diagnostic::{LoadError, Place, Warning};
+use super::mtl::{MtlEntry, UNKNOWN_GREY};
+use super::mtl_text::{self, MtlText, texture_file};
+use super::obj_text::{self, ObjText};
+use super::text::read_lossy;
+use super::texture::mean_color;
+
+/// The most bytes of an OBJ file that are read.
+const MAX_OBJ_BYTES: u64 = 2 << 30;
+/// The most bytes of an MTL file that are read.
+const MAX_MTL_BYTES: u64 = 64 << 20;
+
+/// The surfaces of an OBJ file.
+#[derive(Debug, Default)]
+pub(super) struct ObjScene {
+    /// Its materials, the grey one for faces without any last.
+    pub(super) materials: Vec<Material>,
+    /// Where each material was defined.
+    pub(super) places: Vec<Place>,
+    /// Its groups.
+    pub(super) meshes: Vec<Mesh>,
+    /// What it asks for in vain.
+    pub(super) warnings: Vec<Warning>,
+}
+
+/// Reads an OBJ file, its material libraries and what is needed of their textures.
+pub(super) fn read(path: &Path) -> Result<ObjScene, LoadError> {
+    let text = read_lossy(path, MAX_OBJ_BYTES)?;
+    let mut obj = obj_text::scan(&text, path)?;
+    drop(text);
+    let mut warnings = std::mem::take(&mut obj.warnings);
+    let mut mtl = read_libraries(path, &obj.libraries, &mut warnings)?;
+    warnings.append(&mut mtl.warnings);
+    tell_unknown_materials(path, &obj, &mtl, &mut warnings);
+
+    let library =
+        tobj::load_mtl_buf(&mut mtl.text.as_bytes()).map_err(|error| unforeseen(path, &error))?;
+    // The library was read above; the text names none, so the parser asks for this one once.
+    obj.text.insert_str(0, "mtllib -\n");
+    let options = tobj::LoadOptions { triangulate: true, ..tobj::LoadOptions::default() };
+    let (models, parsed) =
+        tobj::load_obj_buf(&mut obj.text.as_bytes(), &options, |_| Ok(library.clone()))
+            .map_err(|error| unforeseen(path, &error))?;
+    drop(obj);
+    let parsed = parsed.map_err(|error| unforeseen(path, &error))?;
+
+    let mut scene = ObjScene { warnings, ..ObjScene::default() };
+    let mut images = Images { folder: folder_of(path), ..Images::default() };
+    for source in &parsed {
+        let place = mtl.places.get(&source.name).cloned().unwrap_or_else(|| Place::file(path));
+        let (material, notes) = images.entry(source).to_material();
+        for note in notes {
+            let message = format!("material `{}`: {note}", material.name);
+            scene.warnings.push(place.clone().warning(message));
+        }
+        scene.materials.push(material);
+        scene.places.push(place);
+    }
+    add_meshes(path, models, &mut scene)?;
+    Ok(scene)
+}
+
+/// The parser met what the scan before it let pass.
+fn unforeseen(path: &Path, error: &dyn Display) -> LoadError {
+    Place::file(path).error(format!("the OBJ parser refuses this file: {error}"))
+}
+
+fn folder_of(path: &Path) -> PathBuf {
+    path.parent().map(Path::to_path_buf).unwrap_or_default()
+}
+
+/// Reads all libraries into one text; those that are missing are told.
+fn read_libraries(
+    path: &Path,
+    libraries: &[(String, usize)],
+    warnings: &mut Vec<Warning>,
+) -> Result<MtlText, LoadError> {
+    let folder = folder_of(path);
+    let mut out = MtlText::default();
+    for (names, line) in libraries {
+        // The rest of the line may be one name with spaces, or several names.
+        let whole = folder.join(names.replace('\\', "/"));
+        let files = if whole.is_file() {
+            vec![whole]
+        } else {
+            names.split_whitespace().map(|name| folder.join(name.replace('\\', "/"))).collect()
+        };
+        for file in files {
+            match read_lossy(&file, MAX_MTL_BYTES) {
+                Ok(text) => mtl_text::scan(&text, &file, &mut out)?,
+                Err(LoadError::Unreadable { source, .. }) => {
+                    let message = format!(
+                        "cannot read the material library {}: {source}; its materials become grey",
+                        file.display()
+                    );
+                    warnings.push(Place::line(path, *line).warning(message));
+                }
+                Err(error) => return Err(error),
+            }
+        }
+    }
+    Ok(out)
+}
+
+fn tell_unknown_materials(path: &Path, obj: &ObjText, mtl: &MtlText, warnings: &mut Vec<Warning>) {
+    for (name, line) in &obj.used {
+        if !mtl.places.contains_key(name) {
+            let message = format!("no library defines material `{name}`; its faces become grey");
+            warnings.push(Place::line(path, *line).warning(message));
+        }
+    }
+}
+
+/// Textures read so far: several materials may share one.
+#[derive(Debug, Default)]
+struct Images {
+    folder: PathBuf,
+    means: BTreeMap<PathBuf, Result<Rgb, String>>,
+}
+
+impl Images {
+    fn mean(&mut self, value: &str) -> Result<Rgb, String> {
+        let file = self.folder.join(texture_file(value));
+        self.means.entry(file).or_insert_with_key(|file| mean_color(file)).clone()
+    }
+
+    fn entry(&mut self, source: &tobj::Material) -> MtlEntry {
+        let parameter = |name: &str| source.unknown_param.get(name).map(String::as_str);
+        let number = |name| parameter(name)?.parse::<f64>().ok();
+        let filter = parameter("Tf").and_then(|text| {
+            let mut words = text.split_whitespace().map_while(|word| word.parse::<f64>().ok());
+            Some(Rgb::new(words.next()?, words.next()?, words.next()?))
+        });
+        MtlEntry {
+            name: source.name.clone(),
+            diffuse: source.diffuse.map(Rgb::from),
+            specular: source.specular.map(Rgb::from),
+            emission: source.emissive.map(Rgb::from),
+            filter,
+            opacity: source.dissolve.or_else(|| number("Tr").map(|tr| 1.0 - tr)),
+            eta: source.optical_density,
+            shininess: source.shininess,
+            roughness: number("Pr"),
+            metallic: number("Pm"),
+            illumination: source.illumination_model,
+            diffuse_map: source.diffuse_texture.as_deref().map(|value| self.mean(value)),
+            emission_map: parameter("map_Ke").map(|value| self.mean(value)),
+        }
+    }
+}
+
+/// Appends the groups, and a grey material when some face has none.
+fn add_meshes(
+    path: &Path,
+    models: Vec<tobj::Model>,
+    scene: &mut ObjScene,
+) -> Result<(), LoadError> {
+    let grey = scene.materials.len();
+    let needs_grey = |m: &tobj::Model| m.mesh.material_id.is_none() && !m.mesh.indices.is_empty();
+    if models.iter().any(needs_grey) {
+        scene.materials.push(Material {
+            name: "(none)".to_owned(),
+            bsdf: BsdfDescription::Lambert { reflectance: Rgb::grey(UNKNOWN_GREY) },
+            emission: Rgb::BLACK,
+        });
+        scene.places.push(Place::file(path));
+    }
+    for tobj::Model { mesh, name } in models {
+        if mesh.indices.is_empty() {
+            continue;
+        }
+        let material = mesh.material_id.unwrap_or(grey);
+        let material = u16::try_from(material).map_err(|_error| {
+            Place::file(path).error("more than 65,536 materials; merge those that look the same")
+        })?;
+        let triangles = mesh.indices.as_chunks::<3>().0.to_vec();
+        let positions = mesh.positions.as_chunks::<3>().0;
+        scene.meshes.push(Mesh {
+            name,
+            positions: positions.iter().map(|&p| DVec3::from_array(p)).collect(),
+            materials: vec![material; triangles.len()],
+            triangles,
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,285 @@
+//! What every scene must fulfil, whatever file it came from; checked in this one place.
+
+use common::{Camera, Rgb};
+use glam::DVec3;
+
+use super::MAX_EDGES;
+use super::description::{BsdfDescription, Material, Mesh, SceneDescription, Sphere};
+
+/// Coordinates beyond this are a mistake: squares and products of them stay far inside an `f64`,
+/// but nothing that a picture needs is lost in their rounding.
+pub(super) const MAX_COORDINATE: f64 = 1e15;
+/// The most triangles that are read from one scene.
+pub(super) const MAX_TRIANGLES: usize = 20_000_000;
+/// The longest side of a film in pixels.
+const MAX_FILM_SIDE: u32 = 16_384;
+/// The most pixels of a film.
+const MAX_FILM_PIXELS: u64 = 1 << 26;
+/// Radiance beyond this is a mistake, and its products could overflow.
+const MAX_RADIANCE: f64 = 1e15;
+/// Indices of refraction beyond this (or below its inverse) are a mistake.
+const MAX_ETA: f64 = 100.0;
+/// A triangle is degenerate when its doubled area is below this share of its longest side squared.
+const DEGENERATE: f64 = 1e-12;
+
+/// Which part of a description is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    /// The scene as a whole.
+    Scene,
+    /// The camera.
+    Camera,
+    /// The film.
+    Film,
+    /// A material, by index.
+    Material(usize),
+    /// A mesh, by index.
+    Mesh(usize),
+    /// A sphere, by index.
+    Sphere(usize),
+}
+
+/// What is wrong with a description.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Problem {
+    /// Where.
+    pub(super) part: Part,
+    /// The field of that part, as the project's own scene files spell it; may be empty.
+    pub(super) field: &'static str,
+    /// What, and what to do.
+    pub(super) message: String,
+}
+
+impl Problem {
+    fn new(part: Part, field: &'static str, message: impl Into<String>) -> Self {
+        Self { part, field, message: message.into() }
+    }
+}
+
+/// What was mended in a mesh, and may be told in a warning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Dropped {
+    /// The mesh, by the index it had before meshes without triangles were removed.
+    pub(super) mesh: usize,
+    /// How many of its triangles had no area.
+    pub(super) triangles: usize,
+}
+
+/// Checks a description, and removes triangles without area and meshes without triangles.
+pub(super) fn validate(scene: &mut SceneDescription) -> Result<Vec<Dropped>, Problem> {
+    check_film(scene)?;
+    check_camera(scene)?;
+    for (i, material) in scene.materials.iter().enumerate() {
+        check_material(material).map_err(|(field, m)| Problem::new(Part::Material(i), field, m))?;
+    }
+    let materials = scene.materials.len();
+    for (i, mesh) in scene.meshes.iter().enumerate() {
+        check_mesh(mesh, materials).map_err(|(field, m)| Problem::new(Part::Mesh(i), field, m))?;
+    }
+    for (i, sphere) in scene.spheres.iter().enumerate() {
+        check_sphere(sphere, materials)
+            .map_err(|(field, m)| Problem::new(Part::Sphere(i), field, m))?;
+    }
+    let count = scene.meshes.iter().map(|m| m.triangles.len()).sum::<usize>();
+    if count > MAX_TRIANGLES {
+        let message = format!("the scene has {count} triangles; at most {MAX_TRIANGLES} are read");
+        return Err(Problem::new(Part::Scene, "", message));
+    }
+    let dropped = drop_degenerate(scene);
+    check_whole(scene, count)?;
+    Ok(dropped)
+}
+
+type Fault = (&'static str, String);
+
+fn check_film(scene: &SceneDescription) -> Result<(), Problem> {
+    let (width, height) = (scene.width, scene.height);
+    for (field, side) in [("width", width), ("height", height)] {
+        if !(1..=MAX_FILM_SIDE).contains(&side) {
+            let message =
+                format!("the film's {field} is {side}; it must lie between 1 and {MAX_FILM_SIDE}");
+            return Err(Problem::new(Part::Film, field, message));
+        }
+    }
+    if u64::from(width) * u64::from(height) > MAX_FILM_PIXELS {
+        let message = format!(
+            "a film of {width} x {height} pixels is too large; at most {MAX_FILM_PIXELS} pixels"
+        );
+        return Err(Problem::new(Part::Film, "width", message));
+    }
+    if !(1..=MAX_EDGES).contains(&scene.max_edges) {
+        let message = format!(
+            "max_edges is {}; it must lie between 1 and {MAX_EDGES} (1 = a lamp seen directly)",
+            scene.max_edges
+        );
+        return Err(Problem::new(Part::Scene, "max_edges", message));
+    }
+    Ok(())
+}
+
+fn check_camera(scene: &SceneDescription) -> Result<(), Problem> {
+    let pose = &scene.camera;
+    for (field, point) in [("origin", pose.origin), ("target", pose.target), ("up", pose.up)] {
+        check_point(point).map_err(|m| Problem::new(Part::Camera, field, m))?;
+    }
+    Camera::new(pose, scene.width, scene.height)
+        .map(|_| ())
+        .map_err(|error| Problem::new(Part::Camera, "", error.to_string()))
+}
+
+/// A message when `point` is no place for anything.
+pub(super) fn check_point(point: DVec3) -> Result<(), String> {
+    if !point.is_finite() {
+        return Err(format!(
+            "({}, {}, {}) holds a number that is not finite",
+            point.x, point.y, point.z
+        ));
+    }
+    if point.abs().max_element() > MAX_COORDINATE {
+        return Err(format!(
+            "({:e}, {:e}, {:e}) is absurdly far away; coordinates must stay within \
+             {MAX_COORDINATE:e}: use a larger unit",
+            point.x, point.y, point.z
+        ));
+    }
+    Ok(())
+}
+
+fn check_material(material: &Material) -> Result<(), Fault> {
+    let share = |field: &'static str, color: Rgb| {
+        let inside = color.is_physical() && color.max_channel() <= 1.0;
+        let message = || format!("{} must have all channels in [0, 1]", show(color));
+        if inside { Ok(()) } else { Err((field, message())) }
+    };
+    match material.bsdf {
+        BsdfDescription::Lambert { reflectance } | BsdfDescription::Mirror { reflectance } => {
+            share("reflectance", reflectance)?;
+        }
+        BsdfDescription::Dielectric { eta, reflectance, transmittance } => {
+            share("reflectance", reflectance)?;
+            share("transmittance", transmittance)?;
+            if !(1.0 / MAX_ETA..=MAX_ETA).contains(&eta) {
+                let message = format!(
+                    "{eta} is no index of refraction: it must lie between {} and {MAX_ETA} (glass \
+                     is 1.5)",
+                    1.0 / MAX_ETA
+                );
+                return Err(("eta", message));
+            }
+        }
+    }
+    let emission = material.emission;
+    if !(emission.is_physical() && emission.max_channel() <= MAX_RADIANCE) {
+        let message = format!(
+            "{} must have all channels finite, not negative, and at most {MAX_RADIANCE:e}",
+            show(emission)
+        );
+        return Err(("emission", message));
+    }
+    Ok(())
+}
+
+fn show(color: Rgb) -> String {
+    format!("({}, {}, {})", color.r, color.g, color.b)
+}
+
+fn check_mesh(mesh: &Mesh, materials: usize) -> Result<(), Fault> {
+    for (i, &position) in mesh.positions.iter().enumerate() {
+        check_point(position).map_err(|m| ("positions", format!("position {i}: {m}")))?;
+    }
+    let vertices = mesh.positions.len();
+    for (i, triangle) in mesh.triangles.iter().enumerate() {
+        if let Some(bad) = triangle.iter().find(|&&v| v as usize >= vertices) {
+            let message = format!(
+                "triangle {i} refers to position {bad}, but there are only {vertices} (counted \
+                 from 0)"
+            );
+            return Err(("triangles", message));
+        }
+    }
+    if mesh.materials.len() != mesh.triangles.len() {
+        let message = format!(
+            "{} triangles, but {} material indices",
+            mesh.triangles.len(),
+            mesh.materials.len()
+        );
+        return Err(("material", message));
+    }
+    match mesh.materials.iter().find(|&&m| usize::from(m) >= materials) {
+        Some(bad) => {
+            Err(("material", format!("material {bad} does not exist; there are {materials}")))
+        }
+        None => Ok(()),
+    }
+}
+
+fn check_sphere(sphere: &Sphere, materials: usize) -> Result<(), Fault> {
+    check_point(sphere.centre).map_err(|m| ("centre", m))?;
+    if !(sphere.radius > 0.0 && sphere.radius <= MAX_COORDINATE) {
+        let message = format!("{} must be positive and at most {MAX_COORDINATE:e}", sphere.radius);
+        return Err(("radius", message));
+    }
+    if usize::from(sphere.material) >= materials {
+        let message = format!("material {} does not exist", sphere.material);
+        return Err(("material", message));
+    }
+    Ok(())
+}
+
+fn drop_degenerate(scene: &mut SceneDescription) -> Vec<Dropped> {
+    let mut dropped = Vec::new();
+    for (index, mesh) in scene.meshes.iter_mut().enumerate() {
+        let before = mesh.triangles.len();
+        let keep: Vec<bool> =
+            mesh.triangles.iter().map(|&t| !is_degenerate(&mesh.positions, t)).collect();
+        let mut flags = keep.iter();
+        mesh.triangles.retain(|_| flags.next().copied().unwrap_or(false));
+        let mut flags = keep.iter();
+        mesh.materials.retain(|_| flags.next().copied().unwrap_or(false));
+        let triangles = before - mesh.triangles.len();
+        if triangles > 0 {
+            dropped.push(Dropped { mesh: index, triangles });
+        }
+    }
+    scene.meshes.retain(|mesh| !mesh.triangles.is_empty());
+    dropped
+}
+
+/// True for a triangle without area, to the precision of its coordinates.
+fn is_degenerate(positions: &[DVec3], triangle: [u32; 3]) -> bool {
+    let corner = |i: usize| positions.get(triangle[i] as usize).copied().unwrap_or_default();
+    let (a, b, c) = (corner(0), corner(1), corner(2));
+    let longest = (b - a).length_squared().max((c - b).length_squared());
+    let longest = longest.max((a - c).length_squared());
+    !((b - a).cross(c - a).length() > DEGENERATE * longest)
+}
+
+fn check_whole(scene: &SceneDescription, triangles: usize) -> Result<(), Problem> {
+    if scene.meshes.is_empty() && scene.spheres.is_empty() {
+        let message = if triangles == 0 {
+            "the scene has no surface: it needs at least one triangle or sphere".to_owned()
+        } else {
+            format!("none of the scene's {triangles} triangles has any area")
+        };
+        return Err(Problem::new(Part::Scene, "", message));
+    }
+    let emits = |&material: &u16| {
+        scene.materials.get(usize::from(material)).is_some_and(|m| !m.emission.is_black())
+    };
+    let lit = scene.meshes.iter().any(|mesh| mesh.materials.iter().any(emits))
+        || scene.spheres.iter().any(|sphere| emits(&sphere.material));
+    if lit {
+        return Ok(());
+    }
+    let unused = scene.materials.iter().find(|m| !m.emission.is_black());
+    let message = match unused {
+        Some(material) => format!(
+            "the scene has no light: material `{}` emits, but no surface of non-zero area uses it",
+            material.name
+        ),
+        None => "the scene has no light: give some surface a material that emits (`emission` in \
+                 .toml, `Ke` in .mtl)"
+            .to_owned(),
+    };
+    Err(Problem::new(Part::Scene, "", message))
+}
