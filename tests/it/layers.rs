@@ -29,6 +29,7 @@ const TRANSPORT: &[&str] = &[
     "tracer-server/src/integrator",
     "tracer-server/src/parallel",
     "tracer-server/src/film",
+    "tracer-server/src/render",
     "tracer-server/src/engine",
 ];
 
@@ -76,8 +77,14 @@ const RULES: &[Rule] = &[
     Rule {
         files: TRANSPORT,
         except: &[],
-        never: &["prost", "proto", "tokio", "tonic", "crate::hub", "crate::service", "crate::cli"],
+        never: &["prost", "proto", "tokio", "tonic", "crate::cli", "crate::service"],
         because: "transport is mathematics and must run without a network",
+    },
+    Rule {
+        files: TRANSPORT,
+        except: &["tracer-server/src/engine"],
+        never: &["crate::engine", "crate::hub"],
+        because: "only the engine shows anybody what the chains do",
     },
     Rule {
         files: &["tracer-server/src/math"],
@@ -220,9 +227,10 @@ fn lies_under(path: &str, prefix: &str) -> bool {
     rest.is_some_and(|rest| rest.is_empty() || rest == ".rs" || rest.starts_with('/'))
 }
 
-/// Files that a module includes under `#[cfg(test)]`.
+/// Files that modules include under `#[cfg(test)]`, by the names that we give to such files.
 fn is_test_file(path: &str) -> bool {
-    path.ends_with("/laws.rs") || path.ends_with("/tests.rs") || path.contains("/tests/")
+    let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
+    ["fixtures.rs", "laws.rs", "tests.rs"].contains(&name) || folder.ends_with("/tests")
 }
 
 /// Every path of at least two segments that the file names outside its tests.
