@@ -5,5 +5,6 @@
 
 mod citations;
 mod layers;
+mod stream;
 mod tidy;
 mod workspace;

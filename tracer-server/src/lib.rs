@@ -13,3 +13,4 @@ pub mod parallel;
 pub mod path;
 pub mod render;
 pub mod scene;
+pub mod service;
