@@ -2,6 +2,7 @@
 
 pub mod bsdf;
 pub mod chain;
+pub mod cli;
 pub mod engine;
 pub mod film;
 pub mod hub;

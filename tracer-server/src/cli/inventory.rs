@@ -1,0 +1,221 @@
+//! What a scene holds, counted and measured: the content of `tracer-server info`.
+
+use std::f64::consts::PI;
+
+use common::{CameraPose, Rgb};
+use glam::DVec3;
+use serde::Serialize;
+
+use crate::scene::load::Loaded;
+use crate::scene::{BsdfDescription, Mesh, Scene, SceneDescription};
+
+/// Everything that is told about a scene; lengths in the units of its file.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Inventory {
+    /// The scene's name.
+    pub(crate) name: String,
+    /// Digest of its content.
+    pub(crate) hash: String,
+    /// Number of triangles.
+    pub(crate) triangles: usize,
+    /// Number of analytic spheres.
+    pub(crate) spheres: usize,
+    /// Smallest and largest coordinates.
+    pub(crate) bounds: [[f64; 3]; 2],
+    /// The render camera.
+    pub(crate) camera: CameraPose,
+    /// Width and height in pixels.
+    pub(crate) film: [u32; 2],
+    /// Longest path in edges.
+    pub(crate) max_edges: usize,
+    /// The materials.
+    pub(crate) materials: Vec<MaterialRow>,
+    /// The materials that emit.
+    pub(crate) lights: Vec<LightRow>,
+    /// What the tracer has to deal with.
+    pub(crate) features: Vec<&'static str>,
+    /// What it may leave out.
+    pub(crate) switched_off: Vec<&'static str>,
+    /// What the file asks for in vain, and what was mended.
+    pub(crate) warnings: Vec<String>,
+    /// Time to read and check the files, in seconds.
+    pub(crate) load_seconds: f64,
+    /// Time to build what is traced, in seconds.
+    pub(crate) build_seconds: f64,
+}
+
+/// One material.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct MaterialRow {
+    /// Its name.
+    pub(crate) name: String,
+    /// Its scattering model.
+    pub(crate) model: &'static str,
+    /// Its reflectance, or its transmittance for glass.
+    pub(crate) color: Rgb,
+    /// Its index of refraction, for glass.
+    pub(crate) eta: Option<f64>,
+    /// The radiance it emits.
+    pub(crate) emission: Rgb,
+    /// Number of triangles and spheres of it.
+    pub(crate) shapes: usize,
+}
+
+/// All shapes of one emitting material.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct LightRow {
+    /// The material's name.
+    pub(crate) material: String,
+    /// Number of triangles and spheres.
+    pub(crate) shapes: usize,
+    /// Their area in square units of the file.
+    pub(crate) area: f64,
+    /// Radiance emitted to the front.
+    pub(crate) radiance: Rgb,
+    /// Luminous power: pi times area times luminance.
+    pub(crate) power: f64,
+}
+
+impl Inventory {
+    /// Counts and measures; loading times are still zero.
+    pub(crate) fn new(loaded: &Loaded, scene: &Scene) -> Self {
+        let description = &loaded.description;
+        let usage = usage(description);
+        let (low, high) = bounds(description);
+        let features = scene.features();
+        let mut present = Vec::new();
+        if features.specular {
+            present.push("mirrors or glass: chains keep specular chains of events");
+        }
+        if features.spheres {
+            present.push("analytic spheres: a second hierarchy is searched for exact spheres");
+        }
+        let told = loaded.warnings.iter().map(ToString::to_string);
+        Self {
+            name: description.name.clone(),
+            hash: scene.hash().to_owned(),
+            triangles: description.meshes.iter().map(|mesh| mesh.triangles.len()).sum(),
+            spheres: description.spheres.len(),
+            bounds: [low.to_array(), high.to_array()],
+            camera: description.camera,
+            film: [description.width, description.height],
+            max_edges: description.max_edges,
+            materials: material_rows(description, &usage),
+            lights: light_rows(description, &usage),
+            features: present,
+            switched_off: features.switched_off(),
+            warnings: told.chain(scene.warnings().iter().cloned()).collect(),
+            load_seconds: 0.0,
+            build_seconds: 0.0,
+        }
+    }
+}
+
+/// How much of a scene one material covers.
+#[derive(Clone, Copy, Debug, Default)]
+struct Usage {
+    shapes: usize,
+    area: f64,
+}
+
+fn usage(description: &SceneDescription) -> Vec<Usage> {
+    let mut usage = vec![Usage::default(); description.materials.len()];
+    let mut add = |material: u16, area: f64| {
+        if let Some(entry) = usage.get_mut(usize::from(material)) {
+            entry.shapes += 1;
+            entry.area += area;
+        }
+    };
+    for mesh in &description.meshes {
+        for (triangle, &material) in mesh.triangles.iter().zip(&mesh.materials) {
+            let [a, b, c] = corners(mesh, *triangle);
+            add(material, 0.5 * (b - a).cross(c - a).length());
+        }
+    }
+    for sphere in &description.spheres {
+        add(sphere.material, 4.0 * PI * sphere.radius * sphere.radius);
+    }
+    usage
+}
+
+fn corners(mesh: &Mesh, triangle: [u32; 3]) -> [DVec3; 3] {
+    triangle.map(|vertex| mesh.positions.get(vertex as usize).copied().unwrap_or_default())
+}
+
+fn bounds(description: &SceneDescription) -> (DVec3, DVec3) {
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let mut include = |point: DVec3| {
+        low = low.min(point);
+        high = high.max(point);
+    };
+    for mesh in &description.meshes {
+        for triangle in &mesh.triangles {
+            corners(mesh, *triangle).into_iter().for_each(&mut include);
+        }
+    }
+    for sphere in &description.spheres {
+        include(sphere.centre - sphere.radius);
+        include(sphere.centre + sphere.radius);
+    }
+    (low, high)
+}
+
+fn material_rows(description: &SceneDescription, usage: &[Usage]) -> Vec<MaterialRow> {
+    let row = |(material, usage): (&crate::scene::Material, &Usage)| {
+        let (model, color, eta) = match material.bsdf {
+            BsdfDescription::Lambert { reflectance } => ("lambert", reflectance, None),
+            BsdfDescription::Mirror { reflectance } => ("mirror", reflectance, None),
+            BsdfDescription::Dielectric { eta, transmittance, .. } => {
+                ("dielectric", transmittance, Some(eta))
+            }
+        };
+        let (name, emission) = (material.name.clone(), material.emission);
+        MaterialRow { name, model, color, eta, emission, shapes: usage.shapes }
+    };
+    description.materials.iter().zip(usage).map(row).collect()
+}
+
+fn light_rows(description: &SceneDescription, usage: &[Usage]) -> Vec<LightRow> {
+    let lit = description
+        .materials
+        .iter()
+        .zip(usage)
+        .filter(|(material, usage)| !material.emission.is_black() && usage.shapes > 0);
+    lit.map(|(material, usage)| LightRow {
+        material: material.name.clone(),
+        shapes: usage.shapes,
+        area: usage.area,
+        radiance: material.emission,
+        power: PI * usage.area * material.emission.luminance(),
+    })
+    .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::load::load;
+
+    #[test]
+    fn a_box_of_two_units_is_measured() {
+        let loaded = load("furnace").expect("built in");
+        let scene = Scene::new(&loaded.description).expect("a sound scene");
+        let inventory = Inventory::new(&loaded, &scene);
+        assert_eq!((inventory.triangles, inventory.spheres), (12, 0));
+        assert_eq!(inventory.bounds, [[-1.0; 3], [1.0; 3]]);
+        let light = &inventory.lights[0];
+        assert!((light.area - 24.0).abs() < 1e-12, "six sides of four: {}", light.area);
+        assert!((light.power - PI * 12.0).abs() < 1e-9, "radiance one half: {}", light.power);
+        assert!(inventory.features.is_empty() && inventory.switched_off.len() == 2);
+    }
+
+    #[test]
+    fn a_sphere_counts_with_its_extent() {
+        let loaded = load("caustic").expect("built in");
+        let scene = Scene::new(&loaded.description).expect("a sound scene");
+        let inventory = Inventory::new(&loaded, &scene);
+        let glass = inventory.materials.iter().find(|row| row.model == "dielectric");
+        assert_eq!(glass.map(|row| (row.eta, row.shapes)), Some((Some(1.5), 1)));
+        assert!(inventory.switched_off.is_empty(), "{:?}", inventory.switched_off);
+    }
+}

@@ -1,0 +1,5 @@
+//! The command line: one file a subcommand.
+
+pub mod info;
+mod inventory;
+pub mod scenes;
