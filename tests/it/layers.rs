@@ -193,9 +193,11 @@ type Reference = (String, usize);
 /// Complaints about `files`, one a breach.
 fn breaches(rules: &[Rule], files: &[Source]) -> Vec<String> {
     let mut complaints = Vec::new();
+    let tests = test_modules(files);
     for file in files {
         let applicable: Vec<_> = rules.iter().filter(|rule| rule.covers(&file.path)).collect();
-        if applicable.is_empty() || is_test_file(&file.path) {
+        let is_test = tests.iter().any(|module| lies_under(&file.path, module));
+        if applicable.is_empty() || is_test {
             continue;
         }
         for (named, line) in references(file) {
@@ -227,16 +229,40 @@ fn lies_under(path: &str, prefix: &str) -> bool {
     rest.is_some_and(|rest| rest.is_empty() || rest == ".rs" || rest.starts_with('/'))
 }
 
-/// Files that modules include under `#[cfg(test)]`, by the names that we give to such files.
-fn is_test_file(path: &str) -> bool {
-    let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
-    ["fixtures.rs", "laws.rs", "tests.rs"].contains(&name) || folder.ends_with("/tests")
+/// Where the modules lie that `files` declare as `#[cfg(test)] mod name;`, without `.rs`.
+fn test_modules(files: &[Source]) -> Vec<String> {
+    let mut found = Vec::new();
+    for file in files {
+        let folder = match file.path.rsplit_once('/') {
+            Some((folder, "lib.rs" | "main.rs" | "mod.rs")) => folder,
+            _ => file.path.trim_end_matches(".rs"),
+        };
+        for window in tokens(file).windows(5) {
+            if let [
+                TokenTree::Punct(_),
+                TokenTree::Group(attribute),
+                TokenTree::Ident(keyword),
+                TokenTree::Ident(name),
+                TokenTree::Punct(_),
+            ] = window
+                && is_cfg_test(attribute)
+                && keyword == "mod"
+            {
+                found.push(format!("{folder}/{name}"));
+            }
+        }
+    }
+    found
+}
+
+fn tokens(file: &Source) -> Vec<TokenTree> {
+    let stream = TokenStream::from_str(&file.text);
+    let stream = stream.unwrap_or_else(|error| panic!("{} is not Rust: {error}", file.path));
+    stream.into_iter().collect()
 }
 
 /// Every path of at least two segments that the file names outside its tests.
 fn references(file: &Source) -> Vec<Reference> {
-    let tokens = TokenStream::from_str(&file.text)
-        .unwrap_or_else(|error| panic!("{} is not Rust: {error}", file.path));
     let (_, local) = file.path.split_once("src/").unwrap_or(("", &file.path));
     let mut module: Vec<String> =
         local.trim_end_matches(".rs").split('/').map(str::to_owned).collect();
@@ -244,19 +270,18 @@ fn references(file: &Source) -> Vec<Reference> {
         module.pop();
     }
     let mut found = Vec::new();
-    walk(tokens, &mut module, &mut found);
+    walk(&tokens(file), &mut module, &mut found);
     found
 }
 
-fn walk(tokens: TokenStream, module: &mut Vec<String>, found: &mut Vec<Reference>) {
-    let trees: Vec<_> = tokens.into_iter().collect();
+fn walk(trees: &[TokenTree], module: &mut Vec<String>, found: &mut Vec<Reference>) {
     let mut i = 0;
     while i < trees.len() {
         i = match (&trees[i], trees.get(i + 1), trees.get(i + 2)) {
             (TokenTree::Punct(hash), Some(TokenTree::Group(attribute)), _)
                 if hash.as_char() == '#' && is_cfg_test(attribute) =>
             {
-                after_item(&trees, i + 2)
+                after_item(trees, i + 2)
             }
             (
                 TokenTree::Ident(keyword),
@@ -264,13 +289,13 @@ fn walk(tokens: TokenStream, module: &mut Vec<String>, found: &mut Vec<Reference
                 Some(TokenTree::Group(body)),
             ) if keyword == "mod" => {
                 module.push(name.to_string());
-                walk(body.stream(), module, found);
+                walk(&inside(body), module, found);
                 module.pop();
                 i + 3
             }
-            (TokenTree::Ident(_), ..) => follow(&trees, i, Vec::new(), module, found),
+            (TokenTree::Ident(_), ..) => follow(trees, i, Vec::new(), module, found),
             (TokenTree::Group(group), ..) => {
-                walk(group.stream(), module, found);
+                walk(&inside(group), module, found);
                 i + 1
             }
             _ => i + 1,
@@ -314,10 +339,14 @@ fn follow(
 
 /// The parts of a brace group between its commas, without empty ones.
 fn branches(group: &Group) -> Vec<Vec<TokenTree>> {
-    let trees: Vec<_> = group.stream().into_iter().collect();
+    let trees = inside(group);
     let is_comma = |tree: &TokenTree| matches!(tree, TokenTree::Punct(p) if p.as_char() == ',');
     let parts = trees.split(is_comma).map(<[TokenTree]>::to_vec);
     parts.filter(|part| !part.is_empty()).collect()
+}
+
+fn inside(group: &Group) -> Vec<TokenTree> {
+    group.stream().into_iter().collect()
 }
 
 fn is_path_separator(trees: &[TokenTree], i: usize) -> bool {
@@ -403,8 +432,12 @@ fn what_is_no_breach_is_let_pass() {
     }
     let owner = planted("tracer-server/src/scene/accel.rs", "use obvhs::cwbvh::CwBvh;");
     assert!(owner.is_empty(), "the owner of a library may name it: {owner:?}");
-    let law = planted("tracer-server/src/bsdf/laws.rs", "use crate::path::Path;");
-    assert!(law.is_empty(), "laws may use anything: {law:?}");
+    let law = [
+        Source::made_up("tracer-server/src/bsdf/mod.rs", "#[cfg(test)]\nmod laws;"),
+        Source::made_up("tracer-server/src/bsdf/laws.rs", "use crate::path::Path;"),
+    ];
+    assert_eq!(breaches(RULES, &law), [""; 0], "laws may use anything");
+    assert_eq!(breaches(RULES, &law[1..]).len(), 1, "but only where they are laws");
 }
 
 #[test]
