@@ -3,6 +3,7 @@
 pub mod bsdf;
 pub mod chain;
 pub mod cli;
+pub mod daemon;
 pub mod engine;
 pub mod film;
 pub mod hub;

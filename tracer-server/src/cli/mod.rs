@@ -1,5 +1,95 @@
 //! The command line: one file a subcommand.
+//!
+//! A subcommand is a file with its `clap::Args` and a `run` that returns an exit code, a variant of
+//! [`Command`], and an arm of [`Command::run`]. Results go to stdout, logs to stderr. Exit codes: 0
+//! done, 1 a check failed, 2 bad usage or input.
 
 pub mod info;
+pub mod input;
 mod inventory;
 pub mod scenes;
+pub mod serve;
+
+use std::io::{self, IsTerminal as _, Write as _};
+use std::process::ExitCode;
+
+use anyhow::Context as _;
+use clap::{Parser, Subcommand};
+use tracing_subscriber::EnvFilter;
+
+/// Bad usage or bad input.
+const BAD_INPUT: u8 = 2;
+
+/// Traces light by Metropolis light transport, and shows how it gets to the picture.
+#[derive(Debug, Parser)]
+#[command(
+    name = "tracer-server",
+    version,
+    max_term_width = 100,
+    after_help = "\
+Examples:
+  tracer-server scenes
+  tracer-server info door
+  tracer-server serve cornell --seed 7
+
+Exit codes: 0 done, 1 a check failed, 2 bad usage or input."
+)]
+pub struct Cli {
+    /// What to log, as `LEVEL` or `MODULE=LEVEL,...`; levels are error, warn, info, debug, trace.
+    #[arg(long, global = true, env = "RUST_LOG", default_value = "info", value_name = "FILTER")]
+    pub log: String,
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The subcommands.
+#[derive(Clone, Debug, Subcommand)]
+#[expect(missing_docs, reason = "the help of each stands on its arguments")]
+pub enum Command {
+    Serve(serve::ServeArgs),
+    Scenes(scenes::ScenesArgs),
+    Info(info::InfoArgs),
+}
+
+impl Command {
+    fn run(&self) -> anyhow::Result<ExitCode> {
+        match self {
+            Self::Serve(args) => serve::run(args),
+            Self::Scenes(args) => scenes::run(args),
+            Self::Info(args) => info::run(args),
+        }
+    }
+}
+
+/// Runs the program.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    match log_to_stderr(&cli.log).and_then(|()| cli.command.run()) {
+        Ok(code) => code,
+        // Whoever reads the results, such as `head`, has read enough.
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            // Without stderr, the exit code has to do.
+            drop(writeln!(io::stderr(), "error: {error:#}"));
+            ExitCode::from(BAD_INPUT)
+        }
+    }
+}
+
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    error.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe)
+}
+
+fn log_to_stderr(filter: &str) -> anyhow::Result<()> {
+    let filter = EnvFilter::builder()
+        .parse(filter)
+        .with_context(|| format!("--log or RUST_LOG: `{filter}` is no log filter"))?;
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(io::stderr)
+        .with_ansi(io::stderr().is_terminal())
+        .with_target(false)
+        .init();
+    Ok(())
+}

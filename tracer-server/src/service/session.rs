@@ -21,14 +21,14 @@ pub(super) async fn handshake(inbound: &mut Streaming<ViewerMessage>) -> Result<
     };
     let message = first.map_err(|status| unreadable(&status))?;
     let message = message.ok_or_else(|| Status::invalid_argument("the viewer said nothing"))?;
-    match ViewerEvent::try_from(message).map_err(refusal)? {
+    match ViewerEvent::try_from(message).map_err(|error| refusal(&error))? {
         ViewerEvent::Hello(hello) => Ok(hello),
         _ => Err(Status::invalid_argument("the first message must be `hello`")),
     }
 }
 
 /// The status that a malformed message is answered with.
-fn refusal(error: WireError) -> Status {
+fn refusal(error: &WireError) -> Status {
     match error {
         WireError::Version { .. } => Status::failed_precondition(error.to_string()),
         _ => Status::invalid_argument(error.to_string()),
@@ -140,7 +140,7 @@ impl Session {
 
     fn hear(&self, message: Result<Option<ViewerMessage>, Status>) -> Heard {
         let event = match message {
-            Ok(Some(message)) => ViewerEvent::try_from(message).map_err(refusal),
+            Ok(Some(message)) => ViewerEvent::try_from(message).map_err(|error| refusal(&error)),
             Ok(None) => return Heard::Silent,
             Err(status) => Err(unreadable(&status)),
         };

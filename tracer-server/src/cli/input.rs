@@ -1,0 +1,38 @@
+//! What several subcommands read.
+
+use clap::Args;
+
+use crate::scene::Scene;
+use crate::scene::load::load;
+
+/// Largest side of a film that may be asked for, in pixels.
+const MAX_SIDE: i64 = 16_384;
+
+/// Another size of the film than the scene says.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct FilmSize {
+    /// Width of the film in pixels; the scene's own without.
+    #[arg(long, requires = "height", value_name = "PIXELS")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=MAX_SIDE))]
+    pub width: Option<u32>,
+    /// Height of the film in pixels; the scene's own without.
+    #[arg(long, requires = "width", value_name = "PIXELS")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=MAX_SIDE))]
+    pub height: Option<u32>,
+}
+
+/// Loads what the user named, and logs what it asks for in vain.
+pub(super) fn scene(spec: &str, size: FilmSize) -> anyhow::Result<Scene> {
+    let mut loaded = load(spec)?;
+    for warning in &loaded.warnings {
+        tracing::warn!("{warning}");
+    }
+    if let (Some(width), Some(height)) = (size.width, size.height) {
+        (loaded.description.width, loaded.description.height) = (width, height);
+    }
+    let scene = Scene::new(&loaded.description)?;
+    for warning in scene.warnings() {
+        tracing::warn!("{warning}");
+    }
+    Ok(scene)
+}

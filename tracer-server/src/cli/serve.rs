@@ -1,0 +1,122 @@
+//! `tracer-server serve`: the daemon.
+
+use std::io::{self, Write as _};
+use std::net::SocketAddr;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use anyhow::{Context as _, ensure};
+use clap::Args;
+use clap::builder::RangedU64ValueParser;
+use tokio::signal;
+
+use super::input::{self, FilmSize};
+use crate::chain::EnsembleSettings;
+use crate::daemon::{DEFAULT_ADDRESS, Daemon, DaemonOptions};
+
+/// Traces a scene for ever, and shows viewers how.
+///
+/// Prints `listening on ADDR:PORT` when viewers may connect. Ctrl-C and SIGTERM end it; viewers that
+/// are connected are told.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  tracer-server serve
+  tracer-server serve door --chains 256 --seed 7
+  tracer-server serve scenes/room.toml --listen 127.0.0.1:0 --width 640 --height 480")]
+pub struct ServeArgs {
+    /// A built-in scene, a .toml or .obj file, or a directory that holds one.
+    #[arg(default_value = "cornell")]
+    pub scene: String,
+    /// Where to listen; port 0 takes any that is free.
+    #[arg(long, value_name = "ADDR:PORT", default_value_t = DEFAULT_ADDRESS)]
+    pub listen: SocketAddr,
+    /// Number of Markov chains.
+    #[arg(long, value_name = "N", default_value_t = EnsembleSettings::default().chains)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    pub chains: u32,
+    /// Number of the run: the same seed gives the same paths.
+    #[arg(long, default_value_t = EnsembleSettings::default().seed)]
+    pub seed: u64,
+    /// Worker threads; as many as there are cores without.
+    #[arg(long, value_name = "N")]
+    #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
+    pub threads: Option<usize>,
+    /// The film.
+    #[command(flatten)]
+    pub film: FilmSize,
+    /// Let other machines connect, unencrypted and unauthenticated.
+    #[arg(long)]
+    pub insecure: bool,
+}
+
+/// Serves until it is told to stop.
+pub fn run(args: &ServeArgs) -> anyhow::Result<ExitCode> {
+    ensure!(
+        args.insecure || args.listen.ip().is_loopback(),
+        "--listen {}: other machines could connect there, without encryption and without asking \
+         who they are. Listen on 127.0.0.1, or add --insecure where the network is trusted",
+        args.listen,
+    );
+    let scene = Arc::new(input::scene(&args.scene, args.film)?);
+    let defaults = EnsembleSettings::default();
+    let ensemble = EnsembleSettings {
+        seed: args.seed,
+        chains: args.chains,
+        threads: args.threads.unwrap_or(defaults.threads),
+        ..defaults
+    };
+    let options = DaemonOptions { listen: args.listen, ensemble, ..DaemonOptions::default() };
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .context("cannot wait for signals")?;
+    runtime.block_on(serve(scene, &options))
+}
+
+async fn serve(
+    scene: Arc<crate::scene::Scene>,
+    options: &DaemonOptions,
+) -> anyhow::Result<ExitCode> {
+    // Before anyone can know that we are there, so that no signal kills us half-way.
+    let told_to_stop = told_to_stop()?;
+    let daemon = Daemon::start(scene, options)?;
+    let mut out = io::stdout().lock();
+    writeln!(out, "listening on {}", daemon.address())?;
+    out.flush()?;
+    drop(out);
+    tokio::select! {
+        () = told_to_stop => {}
+        () = daemon.ended().cancelled() => anyhow::bail!("the network service has ended"),
+    }
+    tracing::info!("stopping");
+    daemon.stop();
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Resolves on Ctrl-C, or on SIGTERM where there is such a thing. Listens from the moment of the
+/// call.
+#[cfg(unix)]
+fn told_to_stop() -> io::Result<impl Future<Output = ()>> {
+    use signal::unix::{SignalKind, signal};
+
+    let mut interrupt = signal(SignalKind::interrupt())?;
+    let mut terminate = signal(SignalKind::terminate())?;
+    Ok(async move {
+        tokio::select! {
+            _ = interrupt.recv() => {}
+            _ = terminate.recv() => {}
+        }
+    })
+}
+
+/// Resolves on Ctrl-C.
+#[cfg(not(unix))]
+fn told_to_stop() -> io::Result<impl Future<Output = ()>> {
+    Ok(async {
+        if signal::ctrl_c().await.is_err() {
+            // Without signals only the service itself can end.
+            std::future::pending::<()>().await;
+        }
+    })
+}

@@ -1,0 +1,105 @@
+//! The whole daemon: chains on their threads, the service on its own, and the hub between them.
+
+use std::io;
+use std::net::{Ipv4Addr, SocketAddr};
+use std::sync::Arc;
+
+use common::{Role, Welcome};
+use thiserror::Error;
+use tokio_util::sync::CancellationToken;
+
+use crate::chain::EnsembleSettings;
+use crate::engine::Engine;
+use crate::hub::HubLimits;
+use crate::path::Failure;
+use crate::scene::Scene;
+use crate::service::{Server, SessionInfo, StartError};
+
+/// Where a daemon listens by default.
+pub const DEFAULT_ADDRESS: SocketAddr =
+    SocketAddr::new(std::net::IpAddr::V4(Ipv4Addr::LOCALHOST), 50061);
+
+/// How a daemon runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DaemonOptions {
+    /// Where it listens; port 0 takes any that is free.
+    pub listen: SocketAddr,
+    /// Its chains.
+    pub ensemble: EnsembleSettings,
+    /// Bounds of its queues.
+    pub limits: HubLimits,
+}
+
+impl Default for DaemonOptions {
+    fn default() -> Self {
+        Self {
+            listen: DEFAULT_ADDRESS,
+            ensemble: EnsembleSettings::default(),
+            limits: HubLimits::default(),
+        }
+    }
+}
+
+/// Why a daemon does not start.
+#[derive(Debug, Error)]
+pub enum DaemonError {
+    /// The service does not start.
+    #[error(transparent)]
+    Service(#[from] StartError),
+    /// The system gives no thread.
+    #[error("cannot start the thread of the chains")]
+    Engine(#[source] io::Error),
+}
+
+/// A running daemon; dropping it stops it.
+///
+/// It may be embedded in any program: it owns its threads and its runtime. The service is stopped
+/// before the engine, so that viewers hear of it at once.
+#[derive(Debug)]
+pub struct Daemon {
+    server: Server,
+    _engine: Engine,
+}
+
+impl Daemon {
+    /// Starts the chains of `scene`, and shows them to whoever connects.
+    pub fn start(scene: Arc<Scene>, options: &DaemonOptions) -> Result<Self, DaemonError> {
+        let info = session_info(&scene, &options.ensemble);
+        let server = Server::start(options.listen, info, options.limits)?;
+        let engine = Engine::start(scene, options.ensemble, server.hub().clone())
+            .map_err(DaemonError::Engine)?;
+        Ok(Self { server, _engine: engine })
+    }
+
+    /// The address that it listens on.
+    pub fn address(&self) -> SocketAddr {
+        self.server.address()
+    }
+
+    /// Cancelled when the service has ended, for whatever reason.
+    pub fn ended(&self) -> &CancellationToken {
+        self.server.ended()
+    }
+
+    /// Tells every viewer goodbye, and waits until all threads have ended.
+    pub fn stop(self) {
+        drop(self);
+    }
+}
+
+fn session_info(scene: &Scene, ensemble: &EnsembleSettings) -> SessionInfo {
+    let welcome = Welcome {
+        session: 0,
+        server_version: env!("CARGO_PKG_VERSION").to_owned(),
+        scene_name: scene.name().to_owned(),
+        scene_hash: scene.hash().to_owned(),
+        frame: scene.frame(),
+        camera: *scene.camera(),
+        strategies: ensemble.weights.names(),
+        failure_reasons: Failure::ALL.iter().map(|reason| reason.name().to_owned()).collect(),
+        chains: ensemble.chains,
+        max_edges: scene.max_edges() as u32,
+        role: Role::Observer,
+    };
+    SessionInfo { welcome, mesh: scene.preview_mesh() }
+}
