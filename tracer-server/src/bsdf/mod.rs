@@ -7,6 +7,9 @@ mod dielectric;
 mod lambert;
 mod mirror;
 
+#[cfg(test)]
+mod laws;
+
 use common::{Event, Rgb};
 use glam::DVec3;
 

@@ -5,3 +5,6 @@ mod path_tracer;
 
 pub use bidirectional::BidirectionalTracer;
 pub use path_tracer::PathTracer;
+
+#[cfg(test)]
+mod laws;

@@ -8,6 +8,11 @@ mod independent;
 mod lens;
 mod mixture;
 
+#[cfg(test)]
+mod laws;
+#[cfg(test)]
+mod mutants;
+
 use std::fmt::Debug;
 
 use crate::math::Rng;

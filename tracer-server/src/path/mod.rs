@@ -188,3 +188,6 @@ impl Path {
         self.vertices.iter().any(|v| v.kind == VertexKind::Specular)
     }
 }
+
+#[cfg(test)]
+mod laws;

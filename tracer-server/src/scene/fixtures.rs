@@ -103,6 +103,20 @@ impl Fixture {
         self
     }
 
+    /// Multiplies every length.
+    pub(crate) fn scale(&mut self, factor: f64) {
+        let description = &mut self.description;
+        description.camera.origin *= factor;
+        description.camera.target *= factor;
+        for mesh in &mut description.meshes {
+            mesh.positions.iter_mut().for_each(|p| *p *= factor);
+        }
+        for sphere in &mut description.spheres {
+            sphere.centre *= factor;
+            sphere.radius *= factor;
+        }
+    }
+
     pub(crate) fn build(&self) -> Scene {
         Scene::new(&self.description).expect("a fixture is a valid scene")
     }
@@ -130,11 +144,11 @@ pub(crate) fn specular_room() -> Fixture {
     )
 }
 
-/// A high-contrast floor seen through a glass ball that fills the picture.
+/// A high-contrast floor under a wide lamp, seen through a small glass ball before the camera.
 pub(crate) fn floor_through_glass() -> Fixture {
     let mut fixture = Fixture::new(DVec3::new(0.0, 0.9, 0.0), DVec3::new(0.0, -1.0, 0.0), 60.0)
         .quad(BLACK, Rgb::new(9.0, 9.0, 9.0), [-1., 2., -1.], [2., 0., 0.], [0., 0., 2.])
-        .sphere(GLASS, Rgb::BLACK, [0.0, -0.2, 0.0], 0.6);
+        .sphere(GLASS, Rgb::BLACK, [0.0, 0.6, 0.0], 0.2);
     for x in 0..6 {
         for z in 0..6 {
             let tone =
@@ -144,4 +158,13 @@ pub(crate) fn floor_through_glass() -> Fixture {
         }
     }
     fixture
+}
+
+/// A lit wall mirrored in a pane of glass that is seen from steep to grazing angles; beyond the
+/// pane there is nothing.
+pub(crate) fn wall_in_a_pane() -> Fixture {
+    Fixture::new(DVec3::new(0.0, 0.2, 1.5), DVec3::new(0.0, -0.5, 0.0), 80.0)
+        .quad(GLASS, Rgb::BLACK, [-3., -0.5, -2.], [0., 0., 4.], [6., 0., 0.])
+        .quad(WHITE, Rgb::BLACK, [-3., -0.5, -2.], [6., 0., 0.], [0., 4., 0.])
+        .quad(BLACK, Rgb::grey(20.0), [-0.5, 3.0, -0.5], [1., 0., 0.], [0., 0., 1.])
 }

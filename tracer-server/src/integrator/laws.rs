@@ -1,0 +1,332 @@
+//! Laws of images: closed forms, three integrators that must agree, and bits that must not change.
+
+use common::Rgb;
+use glam::DVec3;
+use tests::{Accumulator, Suite, ZScore, block_means, z_map};
+
+use super::{BidirectionalTracer, PathTracer};
+use crate::chain::{Ensemble, EnsembleSettings};
+use crate::film::Film;
+use crate::scene::fixtures::{
+    Fixture, GLASS, diffuse_room, lambert, specular_room, wall_in_a_pane,
+};
+use crate::scene::{BsdfDescription, Scene};
+
+const BLACK: BsdfDescription = lambert(0.0, 0.0, 0.0);
+
+fn settings(seed: u64, chains: u32) -> EnsembleSettings {
+    EnsembleSettings {
+        seed,
+        chains,
+        threads: 2,
+        bootstrap_samples: 1 << 14,
+        ..EnsembleSettings::default()
+    }
+}
+
+fn path_traced(scene: &Scene, seed: u64, samples: u64) -> Film {
+    let mut tracer = PathTracer::new(scene, seed);
+    tracer.advance(scene, samples, 2);
+    tracer.image(scene)
+}
+
+fn bidirectional(scene: &Scene, seed: u64, samples: u64) -> Film {
+    let mut tracer = BidirectionalTracer::new(scene, seed);
+    tracer.advance(scene, samples, 2);
+    tracer.image(scene)
+}
+
+fn metropolis(scene: &Scene, seed: u64, steps: u64) -> Film {
+    let mut ensemble = Ensemble::new(scene, &settings(seed, 64), |_| ());
+    ensemble.advance(scene, steps, None);
+    ensemble.image(scene)
+}
+
+fn pixels(film: &Film) -> Vec<[f64; 3]> {
+    film.pixels().iter().map(|&pixel| pixel.into()).collect()
+}
+
+/// Independent runs, each with its own seed and, for the chains, its own pool.
+fn runs(render: impl Fn(u64) -> Film) -> Vec<Vec<[f64; 3]>> {
+    (0..16).map(|seed| pixels(&render(seed))).collect()
+}
+
+/// Compares two sets of runs pixel by pixel, in blocks and as a whole.
+fn compare(name: &str, a: &[Vec<[f64; 3]>], b: &[Vec<[f64; 3]>], width: usize) {
+    let blocks = |runs: &[Vec<[f64; 3]>], size| -> Vec<_> {
+        runs.iter().map(|run| block_means(run, width, size)).collect()
+    };
+    for (what, size) in [("pixels", 1), ("blocks", 4), ("the whole", width)] {
+        let suite = z_map(&format!("{name}, {what}"), &blocks(a, size), &blocks(b, size));
+        let verdict = suite.verdict();
+        println!("{name}, {what}: {verdict}, mean z^2 {:.2}", suite.mean_square());
+        assert!(verdict.is_pass(), "{verdict}");
+        if size == 1 {
+            // The tiles of a chain's image err together: half as many degrees of freedom.
+            let spread = 5.0 * (4.0 / suite.len() as f64).sqrt();
+            assert!((suite.mean_square() - 1.0).abs() < spread, "{name}: {}", suite.mean_square());
+        }
+    }
+}
+
+fn assert_agreement(name: &str, fixture: Fixture) {
+    let scene = fixture.film(16, 16).build();
+    let by_path = runs(|seed| path_traced(&scene, seed, 128));
+    let by_bdpt = runs(|seed| bidirectional(&scene, seed + 100, 32));
+    let by_mlt = runs(|seed| metropolis(&scene, seed + 200, 3000));
+    compare(&format!("{name}: path and bdpt"), &by_path, &by_bdpt, 16);
+    compare(&format!("{name}: bdpt and mlt"), &by_bdpt, &by_mlt, 16);
+}
+
+#[test]
+fn integrators_agree_on_a_diffuse_room() {
+    assert_agreement("diffuse", diffuse_room());
+}
+
+#[test]
+fn integrators_agree_on_a_room_with_glass_and_mirror() {
+    assert_agreement("specular", specular_room());
+}
+
+#[test]
+fn integrators_agree_on_a_wall_in_a_pane() {
+    assert_agreement("pane", wall_in_a_pane());
+}
+
+/// Checks the mean of an image against a closed form, from 16 independent runs.
+fn assert_mean(name: &str, expected: f64, render: impl Fn(u64) -> Film) {
+    let mean: Accumulator = (0..16).map(|seed| render(seed).mean().g).collect();
+    let tolerance = 5.0 * mean.standard_error() + 1e-5 * expected;
+    let difference = mean.mean() - expected;
+    println!("{name}: {} +- {:.1e}, expected {expected}", mean.mean(), mean.standard_error());
+    assert!(difference.abs() < tolerance, "{name}: {} instead of {expected}", mean.mean());
+    assert!(mean.standard_error() < 0.04 * expected, "{name}: too noisy to tell anything");
+}
+
+fn assert_mean_of_all(name: &str, expected: f64, scene: &Scene) {
+    assert_mean(&format!("{name}, path"), expected, |seed| path_traced(scene, seed, 1024));
+    assert_mean(&format!("{name}, bdpt"), expected, |seed| bidirectional(scene, seed, 256));
+    assert_mean(&format!("{name}, mlt"), expected, |seed| metropolis(scene, seed, 500));
+}
+
+/// A closed room whose walls emit 1 and reflect `rho`.
+fn furnace(rho: f64, max_edges: usize) -> Fixture {
+    Fixture::new(DVec3::new(0.2, 0.1, 0.3), DVec3::new(-0.5, 0.2, -1.0), 70.0)
+        .room([lambert(rho, rho, rho); 6], Rgb::WHITE)
+        .film(8, 8)
+        .max_edges(max_edges)
+}
+
+#[test]
+fn a_furnace_glows_evenly() {
+    let (rho, n) = (0.5_f64, 6);
+    let expected = (1.0 - rho.powi(n)) / (1.0 - rho);
+    assert_mean_of_all("furnace", expected, &furnace(rho, 6).build());
+}
+
+/// The energy of paths of `k` edges falls by the albedo from one `k` to the next: the chains must
+/// visit them in that proportion. Needs no image.
+#[test]
+fn a_furnace_holds_every_path_length() {
+    let rho = 0.5_f64;
+    let scene = furnace(rho, 6).build();
+    let mut counts = vec![Accumulator::default(); 7];
+    for seed in 0..16 {
+        let mut ensemble = Ensemble::new(&scene, &settings(seed, 64), |_| ());
+        let mut visits = [0.0; 7];
+        for _ in 0..100 {
+            ensemble.advance(&scene, 20, None);
+            ensemble.chains().for_each(|chain| visits[chain.current().edge_count()] += 1.0);
+        }
+        let total: f64 = visits.iter().sum();
+        for (count, visits) in counts.iter_mut().zip(visits) {
+            count.push(visits / total);
+        }
+    }
+    let norm: f64 = (0..6).map(|k| rho.powi(k)).sum();
+    let mut suite = Suite::new("path lengths");
+    for (k, count) in counts.iter().enumerate().skip(1) {
+        let expected = rho.powi(k as i32 - 1) / norm;
+        suite.record(format!("k = {k}"), count.z_against(expected));
+    }
+    // Sixteen runs make a Student's t with heavier tails than the normal distribution.
+    assert!(suite.worst() < 9.0, "{}", suite.verdict());
+}
+
+/// Glass that absorbs nothing is invisible among black walls that all emit the same.
+#[test]
+fn glass_in_an_even_glow_is_invisible() {
+    let clear = BsdfDescription::Dielectric {
+        eta: 1.5,
+        reflectance: Rgb::WHITE,
+        transmittance: Rgb::WHITE,
+    };
+    let scene = Fixture::new(DVec3::new(0.0, 0.0, 0.9), DVec3::ZERO, 50.0)
+        .room([BLACK; 6], Rgb::WHITE)
+        .sphere(clear, Rgb::BLACK, [0.0, 0.0, 0.0], 0.5)
+        .film(8, 8)
+        .max_edges(48)
+        .build();
+    assert_mean_of_all("glass", 1.0, &scene);
+}
+
+/// Radiance that a plane with albedo 0.6 at the origin reflects of a sphere at `(0, height, aside)`
+/// that emits 5: the irradiance is `pi L (R / d)^2 cos`.
+fn lit_by_sphere(radius: f64, height: f64, aside: f64) -> f64 {
+    let distance = height.hypot(aside);
+    0.6 * 5.0 * (radius / distance).powi(2) * height / distance
+}
+
+/// A plane lit by a sphere, and a narrow view of the origin from the side.
+fn sphere_over_plane(radius: f64, height: f64, aside: f64) -> Fixture {
+    Fixture::new(DVec3::new(3.0, 2.0, 0.0), DVec3::ZERO, 0.05)
+        .quad(lambert(0.6, 0.6, 0.6), Rgb::BLACK, [-9., 0., -9.], [0., 0., 18.], [18., 0., 0.])
+        .sphere(BLACK, Rgb::grey(5.0), [0.0, height, aside], radius)
+        .film(4, 4)
+        .max_edges(2)
+}
+
+#[test]
+fn a_sphere_lights_a_plane() {
+    for radius in [0.5, 1e-3] {
+        let scene = sphere_over_plane(radius, 2.0, 1.0).build();
+        let expected = lit_by_sphere(radius, 2.0, 1.0);
+        assert_mean_of_all(&format!("sphere of {radius}"), expected, &scene);
+    }
+}
+
+/// Under a mirror the plane is also lit by the lamp's virtual image: a caustic in closed form.
+#[test]
+fn a_mirrored_lamp_lights_a_plane() {
+    let (radius, height, aside, ceiling) = (0.25, 1.0, 2.0, 2.5);
+    let perfect = BsdfDescription::Mirror { reflectance: Rgb::WHITE };
+    let scene = sphere_over_plane(radius, height, aside)
+        .quad(perfect, Rgb::BLACK, [-9., ceiling, -9.], [18., 0., 0.], [0., 0., 18.])
+        .max_edges(3)
+        .build();
+    let caustic = lit_by_sphere(radius, 2.0 * ceiling - height, aside);
+    let expected = lit_by_sphere(radius, height, aside) + caustic;
+    assert!(caustic > 0.3 * expected, "the caustic must matter");
+    assert_mean_of_all("mirrored lamp", expected, &scene);
+}
+
+/// Light through a slab at normal incidence, all internal reflections together: `(1-F)/(1+F)`.
+#[test]
+fn a_slab_dims_what_lies_behind() {
+    let clear = |eta| BsdfDescription::Dielectric {
+        eta,
+        reflectance: Rgb::WHITE,
+        transmittance: Rgb::WHITE,
+    };
+    let scene = Fixture::new(DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO, 0.1)
+        .quad(clear(1.5), Rgb::BLACK, [-1., -1., 1.], [2., 0., 0.], [0., 2., 0.])
+        .quad(clear(1.5), Rgb::BLACK, [-1., -1., 0.5], [0., 2., 0.], [2., 0., 0.])
+        .quad(BLACK, Rgb::WHITE, [-1., -1., -1.], [2., 0., 0.], [0., 2., 0.])
+        .film(4, 4)
+        .max_edges(24)
+        .build();
+    let f = 0.04;
+    assert_mean_of_all("slab", (1.0 - f) / (1.0 + f), &scene);
+}
+
+fn bits(film: &Film) -> Vec<u64> {
+    film.pixels().iter().flat_map(|p| [p.r.to_bits(), p.g.to_bits(), p.b.to_bits()]).collect()
+}
+
+#[test]
+fn the_number_of_threads_changes_no_bit() {
+    let scene = specular_room().build();
+    let render = |threads| {
+        let settings = EnsembleSettings { threads, ..settings(4, 24) };
+        let mut ensemble = Ensemble::new(&scene, &settings, |_| ());
+        ensemble.advance(&scene, 500, None);
+        ensemble.advance(&scene, 500, None);
+        bits(&ensemble.image(&scene))
+    };
+    let alone = render(1);
+    assert_eq!(alone, render(2), "mlt on two threads");
+    assert_eq!(alone, render(5), "mlt on five threads");
+    let by_path = |threads| {
+        let mut tracer = PathTracer::new(&scene, 4);
+        tracer.advance(&scene, 2, threads);
+        bits(&tracer.image(&scene))
+    };
+    assert_eq!(by_path(1), by_path(2), "path tracing on two threads");
+    let by_bdpt = |threads| {
+        let mut tracer = BidirectionalTracer::new(&scene, 4);
+        tracer.advance(&scene, 2, threads);
+        bits(&tracer.image(&scene))
+    };
+    assert_eq!(by_bdpt(1), by_bdpt(2), "bidirectional tracing on two threads");
+}
+
+#[test]
+fn watching_a_chain_changes_no_bit() {
+    let scene = specular_room().build();
+    let render = |window| {
+        let mut ensemble = Ensemble::new(&scene, &settings(4, 24), |_| ());
+        let batches = ensemble.advance(&scene, 500, window);
+        (batches, bits(&ensemble.image(&scene)))
+    };
+    let (nothing, unwatched) = render(None);
+    let (batches, watched) = render(Some(50));
+    assert_eq!(unwatched, watched, "watching must not disturb");
+    assert!(nothing.is_empty() && !batches.is_empty(), "only a watched chain is shown");
+    let weight: f64 = batches.iter().flat_map(|b| &b.paths().weight).map(|&w| f64::from(w)).sum();
+    let z = ZScore(weight / (24.0 * 500.0) - 1.0);
+    assert!(z.is_within(1e-5), "the records stand for {weight} steps instead of 12000");
+}
+
+/// Scaling a scene by a power of two, or its lights, changes no bit of the image.
+#[test]
+fn powers_of_two_change_no_bit() {
+    let base = specular_room();
+    let render = |fixture: &Fixture| {
+        let scene = fixture.build();
+        let image = metropolis(&scene, 9, 200);
+        (bits(&image), bits(&path_traced(&scene, 9, 2)), bits(&bidirectional(&scene, 9, 2)))
+    };
+    let expected = render(&base);
+    for exponent in [-20, 20] {
+        let mut scaled = base.clone();
+        scaled.scale(2_f64.powi(exponent));
+        assert_eq!(render(&scaled), expected, "lengths times 2^{exponent}");
+    }
+    for exponent in [-90, 90] {
+        let mut brighter = base.clone();
+        let factor = 2_f64.powi(exponent);
+        for material in &mut brighter.description.materials {
+            material.emission = material.emission * factor;
+        }
+        let rescaled = |values: &[u64]| -> Vec<u64> {
+            values.iter().map(|&v| (f64::from_bits(v) * factor).to_bits()).collect()
+        };
+        let (mlt, path, bdpt) = render(&brighter);
+        assert_eq!(mlt, rescaled(&expected.0), "light times 2^{exponent}, mlt");
+        assert_eq!(path, rescaled(&expected.1), "light times 2^{exponent}, path");
+        assert_eq!(bdpt, rescaled(&expected.2), "light times 2^{exponent}, bdpt");
+    }
+}
+
+#[test]
+fn every_step_is_on_the_film() {
+    let scene = specular_room().build();
+    let mut ensemble = Ensemble::new(&scene, &settings(1, 32), |_| ());
+    ensemble.advance(&scene, 2000, None);
+    let splats = ensemble.splats().total_luminance();
+    assert!((splats / 64_000.0 - 1.0).abs() < 1e-9, "{splats} instead of 64000");
+    assert_eq!(ensemble.statistics().not_finite(), 0, "a proposal was no number");
+}
+
+#[test]
+fn a_scene_without_light_on_the_film_stays_black() {
+    // The lamp shines away from everything.
+    let scene = Fixture::new(DVec3::new(0.0, 0.0, 3.0), DVec3::ZERO, 40.0)
+        .quad(lambert(0.5, 0.5, 0.5), Rgb::BLACK, [-1., -1., 0.], [2., 0., 0.], [0., 2., 0.])
+        .quad(GLASS, Rgb::WHITE, [-1., 5., -1.], [0., 0., 2.], [2., 0., 0.])
+        .build();
+    let mut ensemble = Ensemble::new(&scene, &settings(0, 8), |_| ());
+    ensemble.advance(&scene, 100, None);
+    assert_eq!(ensemble.chain_count(), 0, "there is nothing to start from");
+    assert!(ensemble.image(&scene).pixels().iter().all(|p| p.is_black()), "black, not NaN");
+}

@@ -1,0 +1,152 @@
+//! Strategies with one error each, of the kinds that are easily made. The laws must find them all.
+
+use glam::DVec2;
+
+use super::laws::Propose;
+use super::lens::event_probability;
+use super::{Bidirectional, Ends, Independent, LensPerturbation, Mutation, Proposal, propose};
+use crate::math::Rng;
+use crate::path::{Draft, Failure, Path};
+use crate::scene::Tracer;
+
+/// A strategy that is wrong in one place.
+pub(super) struct Mutant<'a> {
+    pub(super) name: &'static str,
+    pub(super) propose: Box<Propose<'a>>,
+    /// The error concerns paths that are seen through glass.
+    pub(super) needs_glass: bool,
+}
+
+/// The arguments of a proposal, which every mutant passes on.
+type Args<'a, 'b, 's> = (&'a Tracer<'s>, &'a Path, &'b mut Rng, &'b mut Draft, &'b mut Path);
+
+fn mutant<'a>(
+    name: &'static str,
+    wrong: impl for<'x, 'y, 's> Fn(Args<'x, 'y, 's>) -> Result<Proposal, Failure> + Sync + 'a,
+) -> Mutant<'a> {
+    Mutant {
+        name,
+        propose: Box::new(move |scene, x, rng, draft, y| wrong((scene, x, rng, draft, y))),
+        needs_glass: false,
+    }
+}
+
+/// Draws a move rightly and judges it by another transition function.
+fn misjudged<M: Mutation>(
+    mutation: &M,
+    (scene, x, rng, draft, y): Args<'_, '_, '_>,
+    transition: impl Fn(&Path, &Path, M::Move) -> f64,
+) -> Result<Proposal, Failure> {
+    if !mutation.applicable(x) {
+        return Err(Failure::NoSubpath);
+    }
+    let via = mutation.propose(scene, x, rng, draft, y)?;
+    let ratio = transition(y, x, mutation.reverse(via)) / transition(x, y, via);
+    Ok(Proposal { ratio, kept_light: 0, kept_eye: 1 })
+}
+
+/// Draws again until a proposal comes about.
+fn redrawn<M: Mutation>(
+    mutation: &M,
+    (scene, x, rng, draft, y): Args<'_, '_, '_>,
+) -> Result<Proposal, Failure> {
+    if !mutation.applicable(x) {
+        return Err(Failure::NoSubpath);
+    }
+    let mut last = Err(Failure::NoSubpath);
+    for _ in 0..1000 {
+        last = propose(mutation, scene, x, rng, draft, y);
+        if last.is_ok() {
+            break;
+        }
+    }
+    last
+}
+
+pub(super) fn of_bidirectional<'a>(right: Bidirectional) -> Vec<Mutant<'a>> {
+    /// The product of the vertices' luminances instead of the luminance of their product.
+    fn scalar_luminance(y: &Path) -> f64 {
+        (1..y.edge_count()).map(|j| y.scattering(j).color.luminance()).product::<f64>()
+    }
+    vec![
+        mutant("bidirectional: the choice of the range is not reversed", move |args| {
+            misjudged(&right, args, |_, y, via: Ends| {
+                y.reciprocal_sum(via.kept_light, via.to) / via.added() as f64
+            })
+        }),
+        mutant("bidirectional: not summed over the sides", move |args| {
+            misjudged(&right, args, |x, y, via: Ends| {
+                let light = (via.kept_light + via.from_light).min(via.to);
+                right.selection(x, via) * y.reciprocal(light)
+            })
+        }),
+        mutant("bidirectional: luminance of factors", move |args| {
+            misjudged(&right, args, |x, y, via: Ends| {
+                right.transition(x, y, via) * y.luminance() / scalar_luminance(y)
+            })
+        }),
+        mutant("bidirectional: drawn again after a failure", move |args| redrawn(&right, args)),
+    ]
+}
+
+pub(super) fn of_independent(right: &Independent) -> Vec<Mutant<'_>> {
+    vec![
+        mutant("independent: the length's probability is missing", move |args| {
+            misjudged(right, args, |_, y, ()| y.density_sum() / (y.edge_count() + 1) as f64)
+        }),
+        mutant("independent: only one split counted", move |args| {
+            misjudged(right, args, |x, y, ()| {
+                right.transition(x, y, ()) * y.reciprocal(1) / y.density_sum()
+            })
+        }),
+        mutant("independent: the number of splits is missing", move |args| {
+            misjudged(right, args, |x, y, ()| {
+                right.transition(x, y, ()) * (y.edge_count() + 1) as f64
+            })
+        }),
+    ]
+}
+
+pub(super) fn of_lens<'a>(right: LensPerturbation) -> Vec<Mutant<'a>> {
+    /// Film area per unit area at the first diffuse vertex: the Jacobian that film measure has
+    /// made superfluous.
+    fn film_per_area(y: &Path, d: usize) -> f64 {
+        let (k, v) = (y.edge_count(), y.vertices());
+        let distance_squared: f64 =
+            (d..k).map(|j| (v[j + 1].position - v[j].position).length()).sum::<f64>().powi(2);
+        let cosine = v[k].normal.dot(-y.edges()[k - 1].direction);
+        v[d].normal.dot(y.edges()[d].direction).abs() / (distance_squared * cosine.powi(3))
+    }
+    let through =
+        |film: DVec2, (scene, x, _, draft, y): Args<'_, '_, '_>, right: &LensPerturbation| {
+            if !right.applicable(x) {
+                return Err(Failure::NoSubpath);
+            }
+            let d = LensPerturbation::retrace(scene, x, film, draft, y)?;
+            let ratio = right.transition(y, x, d) / right.transition(x, y, d);
+            Ok(Proposal { ratio, kept_light: d, kept_eye: 1 })
+        };
+    let mut events = mutant("lens: event probabilities divided out", move |args| {
+        misjudged(&right, args, |x, y, d| right.transition(x, y, d) * event_probability(y, d))
+    });
+    events.needs_glass = true;
+    vec![
+        mutant("lens: ratio in area measure", move |args| {
+            misjudged(&right, args, |x, y, d| right.transition(x, y, d) / film_per_area(y, d))
+        }),
+        mutant("lens: film point clamped to the border", move |(scene, x, rng, draft, y)| {
+            let film = right.displace(x.film(), rng);
+            let inside = film.clamp(DVec2::ZERO, DVec2::splat(1.0 - 1e-9));
+            through(inside, (scene, x, rng, draft, y), &right)
+        }),
+        mutant("lens: drawn again off the film", move |(scene, x, rng, draft, y)| {
+            let mut film = right.displace(x.film(), rng);
+            while film.min_element() < 0.0 || film.max_element() >= 1.0 {
+                film = right.displace(x.film(), rng);
+            }
+            through(film, (scene, x, rng, draft, y), &right)
+        }),
+        mutant("lens: drawn again after a failure", move |args| redrawn(&right, args)),
+        events,
+    ]
+}
