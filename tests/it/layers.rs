@@ -156,7 +156,7 @@ const RULES: &[Rule] = &[
     },
     Rule {
         files: &["tracer-server/src"],
-        except: &["tracer-server/src/service", "tracer-server/src/daemon"],
+        except: &["tracer-server/src/service"],
         never: &["proto", "tonic", "tonic_health", "tonic_reflection"],
         because: "wire types stop at the door",
     },

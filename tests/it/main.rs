@@ -1,9 +1,10 @@
 //! Everything that takes more than one crate to test, in one binary.
 //!
-//! `citations`, `layers` and `tidy` keep the repository in order; the others run the
+//! `citations`, `documents`, `layers` and `tidy` keep the repository in order; the others run the
 //! program. To add a test, add a file with its `#[test]` functions and one line here.
 
 mod citations;
+mod documents;
 mod layers;
 mod stream;
 mod tidy;
