@@ -4,6 +4,7 @@
 //! program. To add a test, add a file with its `#[test]` functions and one line here.
 
 mod citations;
+mod daemon;
 mod documents;
 mod layers;
 mod stream;
