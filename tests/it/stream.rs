@@ -1,7 +1,7 @@
 //! A real daemon service on a free port, watched by real viewers; only the paths are made up.
 
 use std::future::Future;
-use std::io::Write as _;
+use std::io::{Read as _, Write as _};
 use std::net::TcpStream;
 use std::sync::Arc;
 use std::time::Duration;
@@ -88,10 +88,10 @@ async fn stop(server: Server) {
     soon("the server to stop", stopping).await.expect("stopping does not panic");
 }
 
-async fn connect(server: &Server) -> TracerClient<Channel> {
+async fn connect(server: &Server) -> Result<TracerClient<Channel>, Status> {
     let endpoint = Endpoint::from_shared(format!("http://{}", server.address())).expect("an URI");
-    let channel = soon("a connection", endpoint.connect()).await.expect("the server listens");
-    TracerClient::new(channel)
+    let channel = soon("a connection", endpoint.connect()).await;
+    channel.map(TracerClient::new).map_err(|error| Status::unavailable(error.to_string()))
 }
 
 fn hello() -> v1::Hello {
@@ -108,7 +108,7 @@ async fn watch(
     server: &Server,
     messages: Vec<v1::ViewerMessage>,
 ) -> Result<Streaming<v1::TracerMessage>, Status> {
-    let mut client = connect(server).await;
+    let mut client = connect(server).await?;
     let answer = soon("an answer", client.watch(tokio_stream::iter(messages))).await?;
     Ok(answer.into_inner())
 }
@@ -393,7 +393,7 @@ async fn garbage_is_refused_and_harms_nobody() {
 async fn a_viewer_that_says_nothing_is_sent_away() {
     let server = start(HubLimits::default());
     let (_silent, messages) = mpsc::channel::<v1::ViewerMessage>(1);
-    let mut client = connect(&server).await;
+    let mut client = connect(&server).await.expect("the server listens");
     let answer = soon("a refusal", client.watch(ReceiverStream::new(messages))).await;
     let status = answer.map(drop).expect_err("silence is no hello");
     assert_eq!(status.code(), Code::DeadlineExceeded, "{status}");
@@ -417,6 +417,40 @@ async fn one_viewer_too_many_is_refused_until_another_leaves() {
     };
     soon("a free place", joined).await;
     stop(server).await;
+}
+
+#[tokio::test]
+async fn a_flood_of_connections_is_cut_off_and_survived() {
+    let server = start(HubLimits::default());
+    let mut witness = Viewer::join(&server).await.expect("welcome");
+    assert_eq!(witness.snapshot().await, [], "nothing was published yet");
+    let address = server.address();
+    let flood = tokio::task::spawn_blocking(move || {
+        let idle: Vec<_> = (0..300).map(|_| TcpStream::connect(address)).collect();
+        let refused = idle.iter().flatten().filter(|socket| is_closed(socket)).count();
+        (idle, refused)
+    });
+    let (idle, refused) = soon("the flood", flood).await.expect("no panic");
+    assert!(refused > 0, "three hundred connections are too many");
+    let (sent, paths) = batch(1000);
+    server.hub().publish_paths(sent);
+    match witness.next_data().await {
+        Some(TracerEvent::Paths(got)) => assert_eq!(rebuild(&got), paths),
+        other => panic!("the witness must not notice, but got {other:?}"),
+    }
+    drop(idle);
+    let joined = async {
+        while Viewer::join(&server).await.is_err() {
+            tokio::time::sleep(Duration::from_millis(20)).await;
+        }
+    };
+    soon("a free place", joined).await;
+    stop(server).await;
+}
+
+/// True when the peer has closed the connection; a server that keeps it greets with its settings.
+fn is_closed(mut socket: &TcpStream) -> bool {
+    !matches!(socket.read(&mut [0; 1]), Ok(1))
 }
 
 #[tokio::test]
@@ -480,7 +514,7 @@ async fn the_daemon_stops_with_viewers_connected() {
 #[tokio::test]
 async fn the_scene_arrives_whole_or_not_at_all() {
     let server = start(HubLimits::default());
-    let mut client = connect(&server).await;
+    let mut client = connect(&server).await.expect("the server listens");
     let info = session_info();
     let fetch = async |client: &mut TracerClient<Channel>, known_hash: &str| {
         let request = v1::SceneRequest { known_hash: known_hash.to_owned() };

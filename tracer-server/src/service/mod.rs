@@ -3,6 +3,7 @@
 //! A [`Server`] owns a thread with its own runtime, so that a program without one can embed it. This
 //! module knows the hub and the wire, and nothing of how paths are made.
 
+mod connections;
 mod outbound;
 mod scene;
 mod server;
@@ -20,7 +21,6 @@ use tokio::net::TcpListener;
 use tokio_stream::Stream;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
-use tonic::transport::server::TcpIncoming;
 use tonic::{Request, Response, Status, Streaming};
 
 pub use server::{Server, StartError};
@@ -39,6 +39,8 @@ const GRACE: Duration = Duration::from_secs(2);
 const PING_INTERVAL: Duration = Duration::from_secs(20);
 /// See [`PING_INTERVAL`].
 const PING_TIMEOUT: Duration = Duration::from_secs(20);
+/// Connections at a time: viewers, tools and whoever is refused.
+const MAX_CONNECTIONS: usize = 128;
 /// Streams that one connection may have open.
 const STREAMS_PER_CONNECTION: u32 = 32;
 /// What viewers are told when the daemon ends.
@@ -96,7 +98,7 @@ pub async fn serve(
         .add_service(reflection)
         .add_service(tracer)
         .serve_with_incoming_shutdown(
-            TcpIncoming::from(listener).with_nodelay(Some(true)),
+            connections::accept(listener, MAX_CONNECTIONS),
             shutdown.clone().cancelled_owned(),
         );
     let overdue = async {
