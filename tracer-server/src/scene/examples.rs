@@ -49,6 +49,18 @@ fn the_built_in_scenes_are_what_their_heads_say() {
     assert!((50..400).contains(&door), "{door} triangles");
 }
 
+#[test]
+fn the_example_of_the_scenes_readme_loads() {
+    let readme = include_str!("../../../scenes/README.md");
+    let example = readme.split("```toml").nth(1).and_then(|rest| rest.split("```").next());
+    let directory = tempfile::tempdir().expect("a directory");
+    let write = |name: &str, text: &str| std::fs::write(directory.path().join(name), text);
+    write("scene.toml", example.expect("a block of TOML")).expect("written");
+    write("statue.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
+    let loaded = load(directory.path().to_str().expect("UTF-8")).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(triangles(&loaded), 2 + 12 + 1 + 1);
+}
+
 /// The folder of scenes made by others, or `None` with a printed line.
 #[expect(clippy::print_stderr, reason = "a test that is skipped must say so")]
 fn shared_scenes() -> Option<PathBuf> {
