@@ -1,1 +1,30 @@
-//! placeholder
+//! The viewer: draws the scene, its light paths and the picture they make.
+//!
+//! Data comes in through [`connection`], is kept in [`store`] and [`film`], and is drawn by [`gpu`]
+//! and [`panel`]. Everything the user does is a [`command`].
+
+pub mod app;
+pub mod camera;
+pub mod cli;
+pub mod command;
+pub mod connection;
+pub mod embedded;
+pub mod film;
+pub mod format;
+pub mod gpu;
+pub mod headless;
+pub mod keys;
+pub mod model;
+pub mod panel;
+pub mod rates;
+pub mod run;
+pub mod script;
+pub mod settings;
+pub mod status;
+pub mod store;
+#[cfg(test)]
+mod synthetic;
+pub mod theme;
+pub mod watch;
+pub mod window;
+pub mod world;

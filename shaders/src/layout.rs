@@ -1,0 +1,141 @@
+//! The Rust twins of the structs in `wgsl/`.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, UVec4, Vec4};
+
+/// Strategies that have a colour of their own; later ones share the last.
+pub const PALETTE_SIZE: usize = 16;
+
+/// What every pipeline knows of the picture being drawn; twin of `Frame`, whose comments say what
+/// each component is.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct FrameUniforms {
+    /// From scene units to clip space, depth reversed (1 near, 0 at infinity).
+    pub view_projection: Mat4,
+    /// The eye, and the distance of the near plane.
+    pub eye: Vec4,
+    /// The scene's up direction, and 1 for a dark theme.
+    pub up: Vec4,
+    /// Size of the picture in pixels, and its inverse.
+    pub viewport: Vec4,
+    /// Width of lines in pixels, opacity, opacity where hidden, opacity at the lens end.
+    pub line: Vec4,
+    /// Fading age in paths, brightness faded to, glow, radius of start dots in pixels.
+    pub fade: Vec4,
+    /// Darkest radiance in stops, inverse of the range in stops, radius of other dots, end tints.
+    pub tone: Vec4,
+    /// Opacity, opacity of surfaces that face away, wireframe strength, shading.
+    pub surface: Vec4,
+    /// Newest ordinal, colour mode.
+    pub count: UVec4,
+    /// One linear colour a strategy.
+    pub palette: [Vec4; PALETTE_SIZE],
+}
+
+/// One vertex of a polyline: 24 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Pod, Zeroable)]
+#[repr(C)]
+pub struct LinePoint {
+    /// Position in scene units.
+    pub position: [f32; 3],
+    /// Colour and radiance code.
+    pub color: [u8; 4],
+    /// Number of the path since the viewer started, wrapping.
+    pub ordinal: u32,
+    /// Role bits, strategy, place along the path in 255ths, number of edges.
+    pub info: [u8; 4],
+}
+
+impl LinePoint {
+    /// How the struct is read, from location 0 on.
+    pub const ATTRIBUTES: [Attribute; 4] = [
+        Attribute { offset: 0, format: AttributeFormat::Float32x3 },
+        Attribute { offset: 12, format: AttributeFormat::Unorm8x4 },
+        Attribute { offset: 16, format: AttributeFormat::Uint32 },
+        Attribute { offset: 20, format: AttributeFormat::Uint8x4 },
+    ];
+}
+
+/// One corner of a triangle: 24 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct MeshVertex {
+    /// Position in scene units.
+    pub position: [f32; 3],
+    /// Unit normal in 32767ths; the last is unused.
+    pub normal: [i16; 4],
+    /// Square root of the linear colour, and the kind of material.
+    pub color: [u8; 4],
+}
+
+impl MeshVertex {
+    /// How the struct is read, from location 0 on.
+    pub const ATTRIBUTES: [Attribute; 3] = [
+        Attribute { offset: 0, format: AttributeFormat::Float32x3 },
+        Attribute { offset: 12, format: AttributeFormat::Snorm16x4 },
+        Attribute { offset: 20, format: AttributeFormat::Unorm8x4 },
+    ];
+}
+
+/// One member of a vertex, as the vertex stage reads it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Attribute {
+    /// Bytes from the start of the vertex.
+    pub offset: u64,
+    /// How its bytes become numbers.
+    pub format: AttributeFormat,
+}
+
+/// How the bytes of an attribute become numbers in the shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AttributeFormat {
+    /// Three floats.
+    Float32x3,
+    /// Four bytes as numbers from 0 to 1.
+    Unorm8x4,
+    /// Four signed shorts as numbers from -1 to 1.
+    Snorm16x4,
+    /// Four small integers.
+    Uint8x4,
+    /// One integer.
+    Uint32,
+}
+
+/// Bits of the first component of [`LinePoint::info`].
+pub mod role {
+    /// A path's vertex on the light.
+    pub const START: u8 = 1;
+    /// The last point of a polyline; no segment follows.
+    pub const LAST: u8 = 2;
+    /// Part of a drawing aid rather than of a path: its colour is taken as it is.
+    pub const ANNOTATION: u8 = 4;
+}
+
+/// Values of the last component of [`MeshVertex::color`].
+pub mod material_kind {
+    /// An opaque surface.
+    pub const OPAQUE: u8 = 0;
+    /// Lets light through.
+    pub const TRANSPARENT: u8 = 1;
+    /// Emits light.
+    pub const EMITTER: u8 = 2;
+    /// A mirror.
+    pub const MIRROR: u8 = 3;
+}
+
+/// Stops (log2) that the radiance code spans.
+pub(crate) const CODE_STOPS: f32 = 64.0;
+/// The lowest of them.
+pub(crate) const CODE_LOWEST: f32 = -40.0;
+
+/// A radiance as a byte, in quarter stops from 2^-40 to 2^24.
+pub fn encode_radiance(radiance: f32) -> u8 {
+    let stops = radiance.max(f32::MIN_POSITIVE).log2();
+    (((stops - CODE_LOWEST) / CODE_STOPS).clamp(0.0, 1.0) * 255.0).round() as u8
+}
+
+/// The stops (log2 of the radiance) that a byte stands for.
+pub fn decode_radiance(code: u8) -> f32 {
+    f32::from(code) / 255.0 * CODE_STOPS + CODE_LOWEST
+}

@@ -1,0 +1,27 @@
+// What every pipeline knows of the picture being drawn. Twin: `FrameUniforms`.
+// Only vec4 and mat4 members, so that both languages lay it out alike.
+struct Frame {
+    view_projection: mat4x4<f32>,
+    // xyz: the eye in scene units; w: distance of the near plane.
+    eye: vec4<f32>,
+    // xyz: the scene's up direction; w: 1 for a dark theme, 0 for a light one.
+    up: vec4<f32>,
+    // Width and height of the picture in pixels, then their inverses.
+    viewport: vec4<f32>,
+    // Lines: width in pixels, opacity, opacity where hidden, opacity at the lens end.
+    line: vec4<f32>,
+    // Age at which a path has faded to 1/e (in paths), brightness it fades to, glow (0 covers,
+    // 1 adds light), radius of the dots at the light end in pixels.
+    fade: vec4<f32>,
+    // log2 of the radiance drawn darkest, 1 / (log2 of the brightest - that), radius of the other
+    // vertices' dots in pixels, 1 to tint the two ends.
+    tone: vec4<f32>,
+    // Surfaces: opacity, opacity of those that face away, wireframe strength, 1 for shading.
+    surface: vec4<f32>,
+    // Ordinal of the newest path, colour mode (0 radiance, 1 strategy, 2 length), unused twice.
+    count: vec4<u32>,
+    // One colour a strategy, linear.
+    palette: array<vec4<f32>, 16>,
+}
+
+@group(0) @binding(0) var<uniform> frame: Frame;

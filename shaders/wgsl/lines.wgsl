@@ -1,0 +1,187 @@
+// Polylines of constant width in pixels, and dots at their vertices.
+//
+// The buffer of points is bound twice, the second time one point further, so that instance `i`
+// sees points `i` and `i + 1`: a segment costs no more than its vertex. The last point of a
+// polyline says so, and the segment to the next polyline's first point is thrown away.
+
+const ROLE_START: u32 = 1u;
+const ROLE_LAST: u32 = 2u;
+const ROLE_ANNOTATION: u32 = 4u;
+
+// Twin: `LinePoint`, at locations 0 to 3 and again at 4 to 7.
+struct Segment {
+    @location(0) position_a: vec3<f32>,
+    // rgb: square root of the colour over its largest channel; a: code of the radiance.
+    @location(1) color_a: vec4<f32>,
+    @location(2) ordinal_a: u32,
+    // Role bits, strategy, place along the path in 255ths, number of edges.
+    @location(3) info_a: vec4<u32>,
+    @location(4) position_b: vec3<f32>,
+    @location(5) color_b: vec4<f32>,
+    @location(6) ordinal_b: u32,
+    @location(7) info_b: vec4<u32>,
+}
+
+struct Fragment {
+    @builtin(position) position: vec4<f32>,
+    // Premultiplied colour without coverage.
+    @location(0) color: vec4<f32>,
+    // Distance from the middle in pixels times w, then w: their quotient is linear on the screen,
+    // which WebGL 2 cannot interpolate by itself.
+    @location(1) across: vec3<f32>,
+    @location(2) @interpolate(flat) half_width: f32,
+}
+
+const CODE_STOPS: f32 = 64.0;
+const CODE_LOWEST: f32 = -40.0;
+const NOWHERE = vec4<f32>(2.0, 2.0, 2.0, 1.0);
+// Lines win over the surface they lie on: this much of the distance, towards the eye.
+const DEPTH_BIAS: f32 = 1.001;
+// Drawing aids keep one width in pixels.
+const ANNOTATION_WIDTH: f32 = 1.25;
+const START_TINT = vec3<f32>(1.0, 0.55, 0.10);
+const END_TINT = vec3<f32>(0.16, 0.48, 1.0);
+
+fn hue_of_length(edges: u32) -> vec3<f32> {
+    // Short paths blue, long ones red, around the colour circle in the sense of a thermometer.
+    let h = 0.66 * (1.0 - clamp(f32(edges) - 1.0, 0.0, 9.0) / 9.0);
+    let rgb = abs(fract(vec3<f32>(h, h + 2.0 / 3.0, h + 1.0 / 3.0)) * 6.0 - 3.0) - 1.0;
+    return clamp(rgb, vec3<f32>(0.0), vec3<f32>(1.0)) * 0.85 + 0.1;
+}
+
+fn radiance_code_to_brightness(code: f32) -> f32 {
+    let stops = code * CODE_STOPS + CODE_LOWEST;
+    return clamp((stops - frame.tone.x) * frame.tone.y, 0.0, 1.0);
+}
+
+fn path_color(color: vec4<f32>, info: vec4<u32>) -> vec3<f32> {
+    if frame.count.y == 1u {
+        return frame.palette[min(info.y, 15u)].rgb;
+    }
+    if frame.count.y == 2u {
+        return hue_of_length(info.w);
+    }
+    return color.rgb * color.rgb;
+}
+
+// Colour and opacity of one end of a segment.
+fn shade(color: vec4<f32>, ordinal: u32, info: vec4<u32>) -> vec4<f32> {
+    if (info.x & ROLE_ANNOTATION) != 0u {
+        return vec4<f32>(color.rgb * color.rgb, color.a);
+    }
+    let age = f32(frame.count.x - ordinal);
+    let fresh = mix(frame.fade.y, 1.0, exp(-age / max(frame.fade.x, 1.0)));
+    var rgb = path_color(color, info);
+    if frame.tone.w > 0.0 && (info.x & ROLE_START) != 0u {
+        rgb = mix(rgb, START_TINT, 0.8);
+    } else if frame.tone.w > 0.0 && (info.x & ROLE_LAST) != 0u {
+        rgb = mix(rgb, END_TINT, 0.8);
+    }
+    let bright = mix(0.22, 1.0, radiance_code_to_brightness(color.a));
+    return vec4<f32>(rgb, frame.line.y * fresh * bright);
+}
+
+fn line_vertex(s: Segment, corner: u32) -> Fragment {
+    var out: Fragment;
+    out.position = NOWHERE;
+    if (s.info_a.x & ROLE_LAST) != 0u {
+        return out;
+    }
+    var a = frame.view_projection * vec4<f32>(s.position_a, 1.0);
+    var b = frame.view_projection * vec4<f32>(s.position_b, 1.0);
+    var color_a = shade(s.color_a, s.ordinal_a, s.info_a);
+    var color_b = shade(s.color_b, s.ordinal_b, s.info_b);
+    let annotation = (s.info_a.x & ROLE_ANNOTATION) != 0u;
+    if !annotation && (s.info_b.x & ROLE_LAST) != 0u {
+        // All paths end in one point, the pinhole: thinned out towards it, or it would blind.
+        color_a.a *= mix(frame.line.w, 1.0, 0.22);
+        color_b.a *= frame.line.w;
+    }
+    let near = frame.eye.w;
+    if a.w < near && b.w < near {
+        return out;
+    }
+    // Cut at the near plane: behind the eye the projection turns over.
+    if a.w < near {
+        let t = (near - a.w) / (b.w - a.w);
+        a = mix(a, b, t);
+        color_a = mix(color_a, color_b, t);
+    } else if b.w < near {
+        let t = (near - b.w) / (a.w - b.w);
+        b = mix(b, a, t);
+        color_b = mix(color_b, color_a, t);
+    }
+    let half_size = 0.5 * frame.viewport.xy;
+    let pixel_a = a.xy / a.w * half_size;
+    let pixel_b = b.xy / b.w * half_size;
+    let delta = pixel_b - pixel_a;
+    let length_px = length(delta);
+    let direction = select(vec2<f32>(1.0, 0.0), delta / length_px, length_px > 1e-4);
+    let normal = vec2<f32>(-direction.y, direction.x);
+
+    let wanted = select(frame.line.x, ANNOTATION_WIDTH, annotation);
+    let width = max(wanted, 1.0);
+    let reach = 0.5 * width + 1.0;
+    let side = select(-1.0, 1.0, (corner & 1u) == 1u);
+    let at_b = corner >= 2u;
+    let clip = select(a, b, at_b);
+    let shift = (normal * side * reach + direction * select(-0.5, 0.5, at_b)) / half_size;
+    let color = select(color_a, color_b, at_b);
+    // Lines below a pixel keep one pixel and lose opacity instead.
+    let alpha = color.a * min(wanted, 1.0);
+
+    out.position = vec4<f32>(clip.xy + shift * clip.w, clip.z * DEPTH_BIAS, clip.w);
+    out.color = vec4<f32>(color.rgb * alpha, alpha);
+    out.across = vec3<f32>(side * reach * clip.w, 0.0, clip.w);
+    out.half_width = 0.5 * width;
+    return out;
+}
+
+@vertex
+fn vs_line(s: Segment, @builtin(vertex_index) corner: u32) -> Fragment {
+    return line_vertex(s, corner);
+}
+
+// The same, as faint as the part of a path behind a surface is drawn.
+@vertex
+fn vs_line_hidden(s: Segment, @builtin(vertex_index) corner: u32) -> Fragment {
+    var out = line_vertex(s, corner);
+    out.color *= frame.line.z;
+    return out;
+}
+
+@vertex
+fn vs_dot(s: Segment, @builtin(vertex_index) corner: u32) -> Fragment {
+    var out: Fragment;
+    out.position = NOWHERE;
+    let starts = (s.info_a.x & ROLE_START) != 0u;
+    let ends = (s.info_a.x & ROLE_LAST) != 0u;
+    let radius = select(frame.tone.z, frame.fade.w, starts);
+    let clip = frame.view_projection * vec4<f32>(s.position_a, 1.0);
+    let skipped = (s.info_a.x & ROLE_ANNOTATION) != 0u || ends || radius <= 0.0;
+    if skipped || clip.w < frame.eye.w {
+        return out;
+    }
+    let reach = radius + 1.0;
+    let offset = vec2<f32>(
+        select(-reach, reach, (corner & 1u) == 1u),
+        select(-reach, reach, corner >= 2u),
+    );
+    let color = shade(s.color_a, s.ordinal_a, s.info_a);
+    let alpha = min(color.a * 1.6, 1.0);
+    let shift = offset / (0.5 * frame.viewport.xy);
+    out.position = vec4<f32>(clip.xy + shift * clip.w, clip.z * DEPTH_BIAS, clip.w);
+    out.color = vec4<f32>(color.rgb * alpha, alpha);
+    out.across = vec3<f32>(offset * clip.w, clip.w);
+    out.half_width = radius;
+    return out;
+}
+
+@fragment
+fn fs_stroke(in: Fragment) -> @location(0) vec4<f32> {
+    let distance = length(in.across.xy / in.across.z);
+    let coverage = clamp(in.half_width + 0.5 - distance, 0.0, 1.0);
+    let color = in.color * coverage;
+    // Glow: less of what lies behind is taken away, so that crossing paths add up like light.
+    return vec4<f32>(color.rgb, color.a * (1.0 - frame.fade.z));
+}

@@ -1,0 +1,307 @@
+//! The viewer itself: owns what came, what the user chose, and what is on the graphics card.
+
+use std::collections::VecDeque;
+use std::time::Instant;
+
+use egui_wgpu::RenderState;
+
+use crate::camera::{Bounds, ViewCamera};
+use crate::command::{CameraCommand, CloudCommand, Command};
+use crate::connection::{Delivery, Link};
+use crate::film::Film;
+use crate::gpu::Renderer;
+use crate::keys;
+use crate::model::{Model, corners, drawing_aids};
+use crate::panel::{self, Panel, Slot};
+use crate::settings::Settings;
+use crate::status::{LinkState, Status};
+use crate::store::{PAGE_POINTS, Store};
+use crate::theme;
+use crate::world::World;
+
+/// Points of paths that go to the graphics card in one frame at most: 6 MiB.
+const UPLOAD_POINTS: usize = 16 * PAGE_POINTS;
+/// Batches that one frame takes in at most; the rest waits for the next.
+const BATCHES_PER_FRAME: usize = 128;
+
+/// Everything behind the window.
+#[derive(Debug)]
+pub struct Viewer {
+    settings: Settings,
+    camera: ViewCamera,
+    status: Status,
+    store: Store,
+    film: Film,
+    model: Option<Model>,
+    /// Hash of the scene that is shown.
+    scene_hash: String,
+    link: Option<Link>,
+    waiting: VecDeque<common::PathBatch>,
+    panels: Vec<(Slot, Box<dyn Panel>)>,
+    stale: Stale,
+    started: Instant,
+    closing: bool,
+    /// Commands for the camera that wait for the scene.
+    script: Vec<Command>,
+}
+
+/// What on the graphics card no longer fits what the viewer holds.
+#[derive(Clone, Copy, Debug)]
+struct Stale {
+    surfaces: bool,
+    aids: bool,
+}
+
+impl Viewer {
+    /// A viewer that has not connected yet.
+    pub fn new(status: Status) -> Self {
+        let settings = Settings::default();
+        Self {
+            store: Store::new(budget_bytes(settings.cloud.budget_mib)),
+            settings,
+            camera: ViewCamera::default(),
+            status,
+            film: Film::default(),
+            model: None,
+            scene_hash: String::new(),
+            link: None,
+            waiting: VecDeque::new(),
+            panels: panel::all(),
+            stale: Stale { surfaces: true, aids: true },
+            started: Instant::now(),
+            closing: false,
+            script: Vec::new(),
+        }
+    }
+
+    /// Sets up what egui and the graphics card need, once.
+    pub fn install(ctx: &egui::Context, gpu: &RenderState) {
+        theme::install(ctx);
+        let renderer =
+            Renderer::new(gpu.device.clone(), gpu.queue.clone(), gpu.target_format, PAGE_POINTS);
+        gpu.renderer.write().callback_resources.insert(renderer);
+    }
+
+    /// Takes over a connection.
+    pub fn set_link(&mut self, link: Link) {
+        self.link = Some(link);
+    }
+
+    /// Follows the commands of a script. Those for the camera wait for the scene, which would
+    /// otherwise undo them.
+    pub fn run_script(&mut self, commands: Vec<Command>) {
+        for command in commands {
+            if matches!(command, Command::Camera(_)) && self.model.is_none() {
+                self.script.push(command);
+            } else {
+                self.apply(command);
+            }
+        }
+    }
+
+    /// True once the user wants to leave.
+    pub fn is_closing(&self) -> bool {
+        self.closing
+    }
+
+    /// Paths that have come so far.
+    pub fn paths_received(&self) -> u64 {
+        self.store.counts().paths
+    }
+
+    /// True when nothing that has come is still to be taken in.
+    pub fn is_settled(&self) -> bool {
+        self.waiting.is_empty() && self.model.is_some() && self.film.size() != [0, 0]
+    }
+
+    /// What is known of the daemon.
+    pub fn status(&self) -> &Status {
+        &self.status
+    }
+
+    /// Takes in what has come.
+    pub fn receive(&mut self) {
+        if let Some(link) = &self.link {
+            let delivery = link.take();
+            self.take(delivery);
+        }
+        let time = self.started.elapsed().as_secs_f64();
+        for _ in 0..BATCHES_PER_FRAME {
+            let Some(batch) = self.waiting.pop_front() else { break };
+            if self.settings.cloud.frozen {
+                self.store.skip(&batch);
+            } else {
+                self.store.append(&batch);
+            }
+        }
+        let counts = self.store.counts();
+        self.status.path_rate.note(time, counts.paths);
+        self.status.byte_rate.note(time, counts.bytes);
+    }
+
+    /// Takes in a delivery; public for harnesses without a network.
+    pub fn take(&mut self, delivery: Delivery) {
+        if let Some(welcome) = delivery.welcome {
+            if welcome.scene_hash != self.scene_hash {
+                self.scene_hash.clone_from(&welcome.scene_hash);
+                self.store.clear();
+                self.film.clear();
+                self.model = None;
+                self.stale = Stale { surfaces: true, aids: true };
+            }
+            self.waiting.clear();
+            self.status.welcome(welcome);
+        }
+        if let Some(scene) = delivery.scene {
+            self.set_model(Model::new(scene.mesh));
+        }
+        if let Some(statistics) = delivery.statistics {
+            self.status.statistics(statistics);
+        }
+        for tile in delivery.film.values() {
+            if !self.film.accept(tile) {
+                tracing::warn!("a tile of the image contradicts itself and was left out");
+            }
+        }
+        if delivery.gaps > 0 {
+            self.store.note_gap(delivery.gap.paths);
+        }
+        self.waiting.extend(delivery.batches);
+        if let Some(state) = delivery.state {
+            self.status.link = state;
+        }
+    }
+
+    fn set_model(&mut self, model: Option<Model>) {
+        self.stale = Stale { surfaces: true, aids: true };
+        let welcome = self.status.welcome.as_ref();
+        let of_mesh = model.as_ref().and_then(|m| m.mesh.camera);
+        let camera = welcome.map(|w| w.camera).or(of_mesh);
+        if let Some(model) = &model {
+            self.camera.set_scene(model.bounds, camera);
+        }
+        self.model = model;
+        for command in std::mem::take(&mut self.script) {
+            self.apply(command);
+        }
+    }
+
+    /// Does what was asked for.
+    pub fn apply(&mut self, command: Command) {
+        tracing::trace!("{command}");
+        match command {
+            Command::Camera(command) => self.camera.apply(command),
+            Command::Cloud(command) => {
+                self.settings.cloud.apply(command);
+                match command {
+                    CloudCommand::Clear => self.store.clear(),
+                    CloudCommand::Budget(mib) => self.store.set_budget(budget_bytes(mib)),
+                    _ => {}
+                }
+            }
+            Command::Scene(command) => {
+                self.settings.scene.apply(command);
+                self.stale.aids = true;
+            }
+            Command::Image(command) => self.settings.image.apply(command),
+            Command::Layout(command) => self.settings.layout.apply(command),
+            Command::Reconnect => {
+                if let Some(link) = &self.link {
+                    link.retry_now();
+                }
+            }
+            Command::Quit => self.closing = true,
+        }
+        // The model of the camera would stand before the user's eyes.
+        self.stale.aids |= matches!(command, Command::Camera(CameraCommand::Through(_)));
+    }
+
+    /// Shows everything, and does what the user asks for.
+    pub fn ui(&mut self, ui: &mut egui::Ui) {
+        let theme = if self.settings.layout.dark { egui::Theme::Dark } else { egui::Theme::Light };
+        ui.ctx().set_theme(theme);
+        let was_through = self.camera.is_through();
+        let mut commands = Vec::new();
+        let world = World {
+            settings: &self.settings,
+            camera: &self.camera,
+            status: &self.status,
+            store: &self.store,
+            film: &self.film,
+            model: self.model.as_ref(),
+            now: Instant::now(),
+        };
+        keys::pressed(ui.ctx(), &world, &mut commands);
+        panel::show(&mut self.panels, ui, &world, &mut commands);
+        self.keep_time(ui.ctx());
+        if !commands.is_empty() {
+            ui.ctx().request_repaint();
+        }
+        for command in commands {
+            self.apply(command);
+        }
+        self.stale.aids |= self.camera.is_through() != was_through;
+    }
+
+    /// Countdowns run by themselves.
+    fn keep_time(&self, ctx: &egui::Context) {
+        if !self.waiting.is_empty() {
+            ctx.request_repaint();
+        } else if matches!(self.status.link, LinkState::Disconnected { .. }) {
+            ctx.request_repaint_after(std::time::Duration::from_millis(250));
+        }
+    }
+
+    /// Brings the graphics card up to date, as far as one frame allows. True when more is to come.
+    pub fn upload(&mut self, gpu: &RenderState) -> bool {
+        let mut egui_renderer = gpu.renderer.write();
+        let Some(renderer) = egui_renderer.callback_resources.get_mut::<Renderer>() else {
+            return false;
+        };
+        if std::mem::take(&mut self.stale.surfaces) {
+            let corners = self.model.as_ref().map(|m| corners(&m.mesh)).unwrap_or_default();
+            renderer.set_mesh(&corners);
+        }
+        if std::mem::take(&mut self.stale.aids) {
+            renderer.set_aids(&self.aids());
+        }
+        renderer.retain_from(self.store.first_serial());
+        upload_paths(&self.store, renderer)
+    }
+
+    fn aids(&self) -> Vec<shaders::LinePoint> {
+        let Some(Model { bounds, .. }) = self.model else { return Vec::new() };
+        let camera = self.camera.render_camera().filter(|_| !self.camera.is_through());
+        drawing_aids(bounds, camera, self.camera.up(), self.settings.scene.aids)
+    }
+
+    /// The box round the scene, once it has come.
+    pub fn bounds(&self) -> Option<Bounds> {
+        self.model.as_ref().map(|model| model.bounds)
+    }
+}
+
+/// Appends what is missing on the graphics card, newest pages first, since they are looked at.
+fn upload_paths(store: &Store, renderer: &mut Renderer) -> bool {
+    let mut room = UPLOAD_POINTS;
+    let mut points = Vec::new();
+    for page in store.pages().rev() {
+        let there = renderer.uploaded(page.serial());
+        if there == page.point_count() {
+            continue;
+        }
+        if room == 0 {
+            return true;
+        }
+        let skip = page.paths().partition_point(|path| (path.first as usize) < there);
+        points.clear();
+        points.extend(page.points(skip));
+        renderer.append_points(page.serial(), &points);
+        room = room.saturating_sub(points.len());
+    }
+    false
+}
+
+fn budget_bytes(mebibytes: u32) -> usize {
+    (mebibytes as usize) << 20
+}

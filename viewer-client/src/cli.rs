@@ -1,0 +1,160 @@
+//! The command line.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::command;
+
+/// Shows the scene, its light paths, and the picture they make.
+#[derive(Debug, Parser)]
+#[command(
+    name = "viewer-client",
+    version,
+    subcommand_negates_reqs = true,
+    args_conflicts_with_subcommands = true,
+    after_help = "Examples:\n  \
+        viewer-client                              a built-in scene, with a daemon of its own\n  \
+        viewer-client --scene caustic              another one, or a scene file\n  \
+        viewer-client 127.0.0.1:50061              a running `tracer-server serve`\n  \
+        viewer-client 127.0.0.1:50061 --headless --screenshot-to view.png --wait-paths 20000\n  \
+        viewer-client watch 127.0.0.1:50061 --count 10",
+    after_long_help = long_help()
+)]
+pub struct Cli {
+    /// What else to do than to open a window.
+    #[command(subcommand)]
+    pub action: Option<Action>,
+    /// The window.
+    #[command(flatten)]
+    pub view: ViewArgs,
+}
+
+/// What else there is.
+#[derive(Debug, Subcommand)]
+pub enum Action {
+    /// Prints what a daemon sends, one line a batch of paths.
+    Watch(WatchArgs),
+}
+
+/// How to view.
+#[derive(Clone, Debug, Args)]
+pub struct ViewArgs {
+    /// HOST:PORT of a running daemon; without it, one is started inside this program.
+    #[arg(value_name = "ADDR", value_parser = address)]
+    pub address: Option<String>,
+    /// Built-in scene or scene file for the daemon inside this program.
+    #[arg(long, value_name = "SCENE", conflicts_with = "address")]
+    pub scene: Option<String>,
+    /// Draws without a window.
+    #[arg(long, requires = "screenshot_to")]
+    pub headless: bool,
+    /// Where to write the picture of the whole window, as PNG.
+    #[arg(long, value_name = "OUT.png", requires = "headless")]
+    pub screenshot_to: Option<PathBuf>,
+    /// Size of the headless window in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
+    pub size: [u32; 2],
+    /// Waits for this many paths before the picture is taken.
+    #[arg(long, value_name = "N", conflicts_with = "wait", requires = "headless")]
+    pub wait_paths: Option<u64>,
+    /// Waits this many seconds before the picture is taken.
+    #[arg(long, value_name = "S", value_parser = seconds, requires = "headless")]
+    pub wait: Option<Duration>,
+    /// A file of commands to begin with, one a line; `--help` lists them.
+    #[arg(long, value_name = "SCRIPT")]
+    pub run: Option<PathBuf>,
+}
+
+/// What to print.
+#[derive(Clone, Debug, Args)]
+pub struct WatchArgs {
+    /// HOST:PORT of a running daemon.
+    #[arg(value_name = "ADDR", value_parser = address)]
+    pub address: String,
+    /// One JSON object a line.
+    #[arg(long)]
+    pub json: bool,
+    /// Ends after this many batches.
+    #[arg(long, value_name = "N")]
+    pub count: Option<u64>,
+}
+
+fn long_help() -> String {
+    let comment = ("# ...", "a comment, to the end of the line");
+    let lines = command::forms().chain([comment]);
+    let lines: Vec<String> = lines.map(|(form, help)| format!("  {form:<52} {help}")).collect();
+    format!("Commands of --run (keys and menus use the same):\n{}", lines.join("\n"))
+}
+
+fn address(text: &str) -> Result<String, String> {
+    let text = text.trim_start_matches("http://");
+    let port = text.rsplit_once(':').map(|(host, port)| (host.is_empty(), port.parse::<u16>()));
+    match port {
+        Some((false, Ok(_))) => Ok(text.to_owned()),
+        _ => Err("write HOST:PORT, such as 127.0.0.1:50061".to_owned()),
+    }
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let complaint = || "write WxH, such as 1280x720; each side from 64 to 8192".to_owned();
+    let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(complaint)?;
+    let side = |text: &str| text.parse().ok().filter(|side| (64..=8192).contains(side));
+    match (side(width), side(height)) {
+        (Some(width), Some(height)) => Ok([width, height]),
+        _ => Err(complaint()),
+    }
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds: f32 = text.parse().map_err(|error| format!("`{text}`: {error}"))?;
+    let range = Duration::ZERO..=Duration::from_hours(24);
+    let duration = Duration::try_from_secs_f32(seconds).ok().filter(|d| range.contains(d));
+    duration.ok_or_else(|| "write seconds, from 0 to 86400".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    #[test]
+    fn the_definition_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn the_contract_parses() {
+        let parse = |line: &str| Cli::try_parse_from(line.split(' '));
+        let cli = parse("viewer-client").expect("no arguments");
+        assert!(cli.view.address.is_none() && cli.action.is_none(), "the embedded daemon");
+        let cli = parse(
+            "viewer-client 127.0.0.1:5 --headless --screenshot-to a.png --size 640x360 --wait 2.5",
+        );
+        let view = cli.expect("a screenshot").view;
+        assert_eq!(view.size, [640, 360], "size");
+        assert_eq!(view.wait, Some(Duration::from_millis(2500)), "seconds");
+        let cli = parse("viewer-client watch [::1]:50061 --json --count 3").expect("watch");
+        assert!(matches!(cli.action, Some(Action::Watch(w)) if w.json && w.count == Some(3)), "w");
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        for line in [
+            "viewer-client nowhere",
+            "viewer-client :50061",
+            "viewer-client 127.0.0.1:99999",
+            "viewer-client 127.0.0.1:5 --scene cornell",
+            "viewer-client --headless",
+            "viewer-client --headless --screenshot-to a.png --size 10x10",
+            "viewer-client --headless --screenshot-to a.png --size 640",
+            "viewer-client --headless --screenshot-to a.png --wait -1",
+            "viewer-client --headless --screenshot-to a.png --wait nan",
+            "viewer-client --headless --screenshot-to a.png --wait 1 --wait-paths 1",
+        ] {
+            assert!(Cli::try_parse_from(line.split(' ')).is_err(), "`{line}` was accepted");
+        }
+    }
+}

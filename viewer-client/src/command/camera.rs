@@ -1,0 +1,123 @@
+//! `camera ...`: how the eye moves.
+
+use std::fmt;
+
+use super::Form;
+use super::words::{CommandError, Switch, Words};
+
+/// What the eye may do. Angles in degrees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CameraCommand {
+    /// Turns round the pivot: to the right, upwards.
+    Orbit(f32, f32),
+    /// Shifts the picture, in heights of the viewport: to the right, upwards.
+    Pan(f32, f32),
+    /// Comes closer by `factor`, towards a point of the viewport.
+    Zoom {
+        /// How much larger things become; below one to go away.
+        factor: f32,
+        /// The point that stays put, in half heights of the viewport: to the right, upwards.
+        at: [f32; 2],
+    },
+    /// Turns the head: to the right, upwards.
+    Look(f32, f32),
+    /// Steps, in sizes of the scene: forward, to the right, upwards.
+    Move([f32; 3]),
+    /// Flying instead of orbiting.
+    Fly(Switch),
+    /// Looking through the render camera.
+    Through(Switch),
+    /// Shows the whole scene.
+    Frame,
+    /// Shows the whole scene from one side.
+    View(Side),
+}
+
+/// A side to look from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Where the render camera stands, roughly.
+    Front,
+    /// Opposite to the front.
+    Back,
+    /// From the left of the front.
+    Left,
+    /// From the right of the front.
+    Right,
+    /// From above.
+    Top,
+    /// From below.
+    Bottom,
+}
+
+impl Side {
+    /// All of them.
+    pub const ALL: [Self; 6] =
+        [Self::Front, Self::Back, Self::Left, Self::Right, Self::Top, Self::Bottom];
+}
+
+impl fmt::Display for Side {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Front => "front",
+            Self::Back => "back",
+            Self::Left => "left",
+            Self::Right => "right",
+            Self::Top => "top",
+            Self::Bottom => "bottom",
+        })
+    }
+}
+
+pub(super) const FORMS: &[Form] = &[
+    ("camera orbit RIGHT UP", "turn round the pivot, in degrees"),
+    ("camera pan RIGHT UP", "shift the picture, in heights of the viewport"),
+    ("camera zoom FACTOR X Y", "come closer towards a point, in half heights of the viewport"),
+    ("camera look RIGHT UP", "turn the head, in degrees"),
+    ("camera move FORWARD RIGHT UP", "step, in sizes of the scene"),
+    ("camera fly on|off|toggle", "fly instead of orbiting"),
+    ("camera through on|off|toggle", "look through the render camera"),
+    ("camera frame", "show the whole scene"),
+    ("camera view front|back|left|right|top|bottom", "show the scene from one side"),
+];
+
+impl fmt::Display for CameraCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Orbit(x, y) => write!(f, "orbit {x} {y}"),
+            Self::Pan(x, y) => write!(f, "pan {x} {y}"),
+            Self::Zoom { factor, at: [x, y] } => write!(f, "zoom {factor} {x} {y}"),
+            Self::Look(x, y) => write!(f, "look {x} {y}"),
+            Self::Move([forward, right, up]) => write!(f, "move {forward} {right} {up}"),
+            Self::Fly(switch) => write!(f, "fly {switch}"),
+            Self::Through(switch) => write!(f, "through {switch}"),
+            Self::Frame => write!(f, "frame"),
+            Self::View(side) => write!(f, "view {side}"),
+        }
+    }
+}
+
+pub(super) fn parse(words: &mut Words<'_>) -> Result<CameraCommand, CommandError> {
+    const TURN: std::ops::RangeInclusive<f32> = -3600.0..=3600.0;
+    const STEP: std::ops::RangeInclusive<f32> = -100.0..=100.0;
+    const EDGE: std::ops::RangeInclusive<f32> = -20.0..=20.0;
+    Ok(match words.next("camera command")? {
+        "orbit" => CameraCommand::Orbit(words.number("RIGHT", TURN)?, words.number("UP", TURN)?),
+        "pan" => CameraCommand::Pan(words.number("RIGHT", STEP)?, words.number("UP", STEP)?),
+        "zoom" => CameraCommand::Zoom {
+            factor: words.number("FACTOR", 0.001..=1000.0)?,
+            at: [words.number("X", EDGE)?, words.number("Y", EDGE)?],
+        },
+        "look" => CameraCommand::Look(words.number("RIGHT", TURN)?, words.number("UP", TURN)?),
+        "move" => CameraCommand::Move([
+            words.number("FORWARD", STEP)?,
+            words.number("RIGHT", STEP)?,
+            words.number("UP", STEP)?,
+        ]),
+        "fly" => CameraCommand::Fly(words.switch()?),
+        "through" => CameraCommand::Through(words.switch()?),
+        "frame" => CameraCommand::Frame,
+        "view" => CameraCommand::View(words.choice("SIDE", &Side::ALL)?),
+        other => return Err(CommandError::Unknown(format!("camera {other}"))),
+    })
+}

@@ -1,0 +1,107 @@
+//! `panel`, `theme`, `help`: what the window holds.
+
+use std::fmt;
+
+use super::Form;
+use super::words::{CommandError, Switch, Words};
+
+/// What may be done to the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LayoutCommand {
+    /// Opens or closes a panel.
+    Panel(PanelName, Switch),
+    /// Chooses the colours of the interface.
+    Theme(ThemeName),
+    /// Opens or closes the sheet of keys.
+    Help(Switch),
+}
+
+/// A panel that can be closed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PanelName {
+    /// How paths are drawn.
+    Cloud,
+    /// How the scene is drawn.
+    Scene,
+    /// The progressive image.
+    Image,
+    /// Counts and rates.
+    Statistics,
+}
+
+impl PanelName {
+    /// All of them, from the left of the window to the right.
+    pub const ALL: [Self; 4] = [Self::Cloud, Self::Scene, Self::Image, Self::Statistics];
+
+    /// The heading.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Cloud => "Paths",
+            Self::Scene => "Scene",
+            Self::Image => "Image",
+            Self::Statistics => "Statistics",
+        }
+    }
+}
+
+impl fmt::Display for PanelName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Cloud => "cloud",
+            Self::Scene => "scene",
+            Self::Image => "image",
+            Self::Statistics => "statistics",
+        })
+    }
+}
+
+/// Colours of the interface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ThemeName {
+    /// Light on dark.
+    Dark,
+    /// Dark on light.
+    Light,
+    /// The other one.
+    Toggle,
+}
+
+impl ThemeName {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Dark, Self::Light, Self::Toggle];
+}
+
+impl fmt::Display for ThemeName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Dark => "dark",
+            Self::Light => "light",
+            Self::Toggle => "toggle",
+        })
+    }
+}
+
+pub(super) const FORMS: &[Form] = &[
+    ("panel cloud|scene|image|statistics on|off|toggle", "open or close a panel"),
+    ("theme dark|light|toggle", "colours of the interface"),
+    ("help on|off|toggle", "the sheet of keys"),
+];
+
+impl fmt::Display for LayoutCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Panel(name, switch) => write!(f, "panel {name} {switch}"),
+            Self::Theme(theme) => write!(f, "theme {theme}"),
+            Self::Help(switch) => write!(f, "help {switch}"),
+        }
+    }
+}
+
+pub(super) fn parse(word: &str, words: &mut Words<'_>) -> Result<LayoutCommand, CommandError> {
+    Ok(match word {
+        "panel" => LayoutCommand::Panel(words.choice("NAME", &PanelName::ALL)?, words.switch()?),
+        "theme" => LayoutCommand::Theme(words.choice("NAME", &ThemeName::ALL)?),
+        "help" => LayoutCommand::Help(words.switch()?),
+        other => return Err(CommandError::Unknown(other.to_owned())),
+    })
+}

@@ -1,0 +1,152 @@
+//! Everything that a user may ask of the viewer, with one text form each.
+//!
+//! Keys, menus, panels and scripts all end here. To add a command: a variant in its group's file,
+//! its line in that group's `FORMS`, and an arm in each of the two conversions; the tests below
+//! then hold it against its text.
+
+mod camera;
+mod cloud;
+mod image;
+mod layout;
+mod scene;
+mod words;
+
+pub use camera::{CameraCommand, Side};
+pub use cloud::{CloudCommand, ColorMode};
+pub use image::ImageCommand;
+pub use layout::{LayoutCommand, PanelName, ThemeName};
+pub use scene::{SceneCommand, Shading};
+pub use words::{CommandError, Switch};
+
+use std::fmt;
+use std::str::FromStr;
+
+use words::Words;
+
+/// One action.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// Moves the eye.
+    Camera(CameraCommand),
+    /// Concerns the paths on screen.
+    Cloud(CloudCommand),
+    /// Concerns the surfaces and drawing aids.
+    Scene(SceneCommand),
+    /// Concerns the progressive image.
+    Image(ImageCommand),
+    /// Concerns the window's panels.
+    Layout(LayoutCommand),
+    /// Tries to connect at once rather than when the next attempt is due.
+    Reconnect,
+    /// Closes the viewer.
+    Quit,
+}
+
+/// A command's text form with its parameters in capitals, and what it does.
+pub type Form = (&'static str, &'static str);
+
+const OWN_FORMS: [Form; 2] = [
+    ("reconnect", "connect now instead of waiting for the next attempt"),
+    ("quit", "close the viewer"),
+];
+
+/// Every text form, for help and documentation.
+pub fn forms() -> impl Iterator<Item = Form> {
+    [camera::FORMS, cloud::FORMS, scene::FORMS, image::FORMS, layout::FORMS, &OWN_FORMS]
+        .into_iter()
+        .flatten()
+        .copied()
+}
+
+impl fmt::Display for Command {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Camera(command) => write!(f, "camera {command}"),
+            Self::Cloud(command) => write!(f, "cloud {command}"),
+            Self::Scene(command) => write!(f, "scene {command}"),
+            Self::Image(command) => write!(f, "image {command}"),
+            Self::Layout(command) => write!(f, "{command}"),
+            Self::Reconnect => write!(f, "reconnect"),
+            Self::Quit => write!(f, "quit"),
+        }
+    }
+}
+
+impl FromStr for Command {
+    type Err = CommandError;
+
+    fn from_str(text: &str) -> Result<Self, CommandError> {
+        let mut words = Words::new(text);
+        let command = match words.next("command")? {
+            "camera" => Self::Camera(camera::parse(&mut words)?),
+            "cloud" => Self::Cloud(cloud::parse(&mut words)?),
+            "scene" => Self::Scene(scene::parse(&mut words)?),
+            "image" => Self::Image(image::parse(&mut words)?),
+            "reconnect" => Self::Reconnect,
+            "quit" => Self::Quit,
+            word => Self::Layout(layout::parse(word, &mut words)?),
+        };
+        words.end()?;
+        Ok(command)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One example of every form, in the order of [`forms`].
+    const EXAMPLES: &str = "camera orbit 12.5 -3\ncamera pan 0.1 -0.25\ncamera zoom 1.5 0.25 -0.5\n\
+        camera look 3 4\ncamera move 0.1 0 -0.2\ncamera fly toggle\ncamera through on\n\
+        camera frame\ncamera view front\n\
+        cloud freeze toggle\ncloud clear\ncloud width 2.5\ncloud opacity 0.5\ncloud hidden 0.1\n\
+        cloud fade 500\ncloud shown 2000\ncloud budget 64\ncloud color strategy\ncloud ends off\n\
+        cloud dots 1.5\n\
+        scene shading wireframe\nscene opacity 0.25\nscene cutaway off\nscene camera on\n\
+        scene grid toggle\n\
+        image exposure -1.5\nimage zoom 2\nimage fit\n\
+        panel statistics off\ntheme light\nhelp toggle\n\
+        reconnect\nquit";
+
+    #[test]
+    fn every_command_survives_its_text() {
+        let examples: Vec<&str> = EXAMPLES.lines().map(str::trim).collect();
+        let forms: Vec<Form> = forms().collect();
+        assert_eq!(examples.len(), forms.len(), "one example a form");
+        for (example, (form, _)) in examples.into_iter().zip(forms) {
+            let command = Command::from_str(example).expect(example);
+            assert_eq!(command.to_string(), example, "text of {command:?}");
+            let verb = |text: &str| -> String {
+                let lower = |w: &&str| w.chars().all(|c| c.is_ascii_lowercase());
+                text.split(' ').take_while(lower).collect::<Vec<_>>().join(" ")
+            };
+            assert!(example.starts_with(&verb(form)), "`{example}` is no example of `{form}`");
+        }
+    }
+
+    #[test]
+    fn every_choice_survives_its_text() {
+        let texts = Side::ALL.iter().map(|s| format!("camera view {s}"));
+        let texts = texts.chain(ColorMode::ALL.iter().map(|c| format!("cloud color {c}")));
+        let texts = texts.chain(Shading::ALL.iter().map(|s| format!("scene shading {s}")));
+        let texts = texts.chain(PanelName::ALL.iter().map(|p| format!("panel {p} toggle")));
+        let texts = texts.chain(["theme dark".into(), "theme light".into(), "theme toggle".into()]);
+        for text in texts {
+            let command = Command::from_str(&text).expect(&text);
+            assert_eq!(command.to_string(), text, "text of {command:?}");
+        }
+    }
+
+    #[test]
+    fn mistakes_are_explained() {
+        let complaint = |text: &str| Command::from_str(text).expect_err(text).to_string();
+        assert_eq!(complaint(""), "a command is missing");
+        assert!(complaint("fly").contains("unknown command `fly`"), "names the word");
+        assert!(complaint("cloud width").contains("PIXELS is missing"), "names the parameter");
+        assert!(complaint("cloud width thin").contains("`thin` is not a number"), "names the word");
+        assert!(complaint("cloud width NaN").contains("`NaN` is not a number"), "no NaN");
+        assert!(complaint("cloud width 900").contains("between 0.25 and 20"), "names the limits");
+        assert!(complaint("scene grid maybe").contains("on, off, toggle"), "lists the choices");
+        assert!(complaint("quit now").contains("`now` is too much"), "names the rest");
+    }
+}

@@ -1,0 +1,176 @@
+//! Reading a command word by word, with complaints that name what is wrong.
+
+use std::fmt;
+use std::ops::RangeInclusive;
+use std::str::SplitWhitespace;
+
+use thiserror::Error;
+
+/// Why a text is no command.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum CommandError {
+    /// The text ends too early.
+    #[error("a {0} is missing")]
+    MissingWord(&'static str),
+    /// A parameter is not there.
+    #[error("the parameter {0} is missing")]
+    MissingParameter(&'static str),
+    /// No command begins so.
+    #[error("unknown command `{0}`; `viewer-client --help` lists the commands")]
+    Unknown(String),
+    /// A word that should be a number.
+    #[error("{parameter}: `{found}` is not a number")]
+    NotANumber {
+        /// The parameter.
+        parameter: &'static str,
+        /// What stands in its place.
+        found: String,
+    },
+    /// A number that makes no sense there.
+    #[error("{parameter} must lie between {low} and {high}, and {found} does not")]
+    OutOfRange {
+        /// The parameter.
+        parameter: &'static str,
+        /// What was given.
+        found: String,
+        /// The smallest value.
+        low: String,
+        /// The largest.
+        high: String,
+    },
+    /// A word that is none of the choices.
+    #[error("`{found}` is none of: {choices}")]
+    NoChoice {
+        /// What was given.
+        found: String,
+        /// What would do.
+        choices: String,
+    },
+    /// Words after the end.
+    #[error("`{0}` is too much")]
+    TooMuch(String),
+}
+
+/// What to do with something that is on or off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Switch {
+    /// Make it on.
+    On,
+    /// Make it off.
+    Off,
+    /// Change it.
+    Toggle,
+}
+
+impl Switch {
+    /// All, in the order of help texts.
+    pub const ALL: [Self; 3] = [Self::On, Self::Off, Self::Toggle];
+
+    /// The state after a state.
+    pub fn apply(self, on: &mut bool) {
+        *on = match self {
+            Self::On => true,
+            Self::Off => false,
+            Self::Toggle => !*on,
+        };
+    }
+
+    /// On or off, as a checkbox says it.
+    pub fn to(on: bool) -> Self {
+        if on { Self::On } else { Self::Off }
+    }
+}
+
+impl fmt::Display for Switch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::On => "on",
+            Self::Off => "off",
+            Self::Toggle => "toggle",
+        })
+    }
+}
+
+/// The words of a command that are still to be read.
+#[derive(Debug)]
+pub(super) struct Words<'a> {
+    rest: SplitWhitespace<'a>,
+}
+
+impl<'a> Words<'a> {
+    pub(super) fn new(text: &'a str) -> Self {
+        Self { rest: text.split_whitespace() }
+    }
+
+    /// The next word, which is a `what`.
+    pub(super) fn next(&mut self, what: &'static str) -> Result<&'a str, CommandError> {
+        self.rest.next().ok_or(CommandError::MissingWord(what))
+    }
+
+    /// A finite number within `range`.
+    pub(super) fn number(
+        &mut self,
+        parameter: &'static str,
+        range: RangeInclusive<f32>,
+    ) -> Result<f32, CommandError> {
+        let word = self.rest.next().ok_or(CommandError::MissingParameter(parameter))?;
+        let not_a_number = || CommandError::NotANumber { parameter, found: word.to_owned() };
+        let value: f32 =
+            word.parse().ok().filter(|v: &f32| v.is_finite()).ok_or_else(not_a_number)?;
+        if range.contains(&value) {
+            return Ok(value);
+        }
+        Err(CommandError::OutOfRange {
+            parameter,
+            found: word.to_owned(),
+            low: range.start().to_string(),
+            high: range.end().to_string(),
+        })
+    }
+
+    /// A whole number within `range`.
+    pub(super) fn count(
+        &mut self,
+        parameter: &'static str,
+        range: RangeInclusive<u32>,
+    ) -> Result<u32, CommandError> {
+        let word = self.rest.next().ok_or(CommandError::MissingParameter(parameter))?;
+        let not_a_number = |_| CommandError::NotANumber { parameter, found: word.to_owned() };
+        let value: u32 = word.parse().map_err(not_a_number)?;
+        if range.contains(&value) {
+            return Ok(value);
+        }
+        Err(CommandError::OutOfRange {
+            parameter,
+            found: word.to_owned(),
+            low: range.start().to_string(),
+            high: range.end().to_string(),
+        })
+    }
+
+    /// One of `choices`, recognised by its text.
+    pub(super) fn choice<T: Copy + fmt::Display>(
+        &mut self,
+        parameter: &'static str,
+        choices: &[T],
+    ) -> Result<T, CommandError> {
+        let word = self.rest.next().ok_or(CommandError::MissingParameter(parameter))?;
+        choices.iter().copied().find(|c| c.to_string() == word).ok_or_else(|| {
+            let choices: Vec<String> = choices.iter().map(ToString::to_string).collect();
+            CommandError::NoChoice { found: word.to_owned(), choices: choices.join(", ") }
+        })
+    }
+
+    /// On, off or toggle.
+    pub(super) fn switch(&mut self) -> Result<Switch, CommandError> {
+        self.choice("SWITCH", &Switch::ALL)
+    }
+
+    /// Nothing may follow.
+    pub(super) fn end(mut self) -> Result<(), CommandError> {
+        match self.rest.next() {
+            Some(word) => Err(CommandError::TooMuch(word.to_owned())),
+            None => Ok(()),
+        }
+    }
+}

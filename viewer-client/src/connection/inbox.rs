@@ -1,0 +1,193 @@
+//! What has come from the daemon and has not been looked at yet: bounded, and never in the way.
+//!
+//! The window may stand still for minutes while it is hidden. So the newest of everything is kept,
+//! and of paths as many as fit; what is pushed out is counted.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::{Mutex, PoisonError};
+
+use common::{FilmTile, Gap, PathBatch, Statistics, Welcome};
+use proto::{ReceivedScene, TracerEvent};
+
+use crate::status::LinkState;
+
+/// Bytes of batches that may wait.
+const BATCH_BYTES: usize = 16 << 20;
+/// Bytes of film tiles that may wait: a film of eight megapixels.
+const FILM_BYTES: usize = 96 << 20;
+
+/// Everything that waits.
+#[derive(Debug, Default)]
+pub struct Delivery {
+    /// How the connection is now, if that changed.
+    pub state: Option<LinkState>,
+    /// The welcome of the newest session; it makes everything before it void.
+    pub welcome: Option<Welcome>,
+    /// The scene, if it came.
+    pub scene: Option<ReceivedScene>,
+    /// The newest statistics.
+    pub statistics: Option<Statistics>,
+    /// Paths in the order in which they came.
+    pub batches: VecDeque<PathBatch>,
+    /// The newest tile for each first row.
+    pub film: BTreeMap<u32, FilmTile>,
+    /// What was lost on the way, here or at the daemon.
+    pub gap: Gap,
+    /// How often something was lost.
+    pub gaps: u64,
+}
+
+impl Delivery {
+    fn push(&mut self, event: TracerEvent) {
+        match event {
+            TracerEvent::Welcome(welcome) => {
+                // The state belongs to the connection, not to the session.
+                let state = self.state.take();
+                *self = Self { state, welcome: Some(welcome), ..Self::default() };
+            }
+            TracerEvent::Paths(batch) => self.push_batch(batch),
+            TracerEvent::Film(tile) => self.push_tile(tile),
+            TracerEvent::Statistics(statistics) => self.statistics = Some(statistics),
+            TracerEvent::Gap(gap) => self.lose(gap),
+            TracerEvent::SnapshotEnd | TracerEvent::Goodbye(_) | TracerEvent::Unknown => {}
+        }
+    }
+
+    fn push_batch(&mut self, batch: PathBatch) {
+        self.batches.push_back(batch);
+        let mut bytes: usize = self.batches.iter().map(PathBatch::byte_len).sum();
+        while bytes > BATCH_BYTES && self.batches.len() > 1 {
+            let Some(oldest) = self.batches.pop_front() else { return };
+            bytes -= oldest.byte_len();
+            self.lose(Gap {
+                batches: 1,
+                paths: oldest.len() as u64,
+                bytes: oldest.byte_len() as u64,
+            });
+        }
+    }
+
+    fn push_tile(&mut self, tile: FilmTile) {
+        let bytes = |tile: &FilmTile| tile.rgb.len() * size_of::<f32>();
+        let held: usize = self.film.values().map(bytes).sum();
+        let other_size = |t: &FilmTile| (t.width, t.height) != (tile.width, tile.height);
+        if held + bytes(&tile) > FILM_BYTES || self.film.values().any(other_size) {
+            self.film.clear();
+        }
+        self.film.insert(tile.first_row, tile);
+    }
+
+    fn lose(&mut self, gap: Gap) {
+        self.gaps += 1;
+        self.gap.batches = self.gap.batches.saturating_add(gap.batches);
+        self.gap.paths = self.gap.paths.saturating_add(gap.paths);
+        self.gap.bytes = self.gap.bytes.saturating_add(gap.bytes);
+    }
+}
+
+/// The box between the network's thread and the window's.
+#[derive(Debug, Default)]
+pub struct Inbox {
+    held: Mutex<Delivery>,
+}
+
+impl Inbox {
+    /// Puts in what the tracer said.
+    pub fn push(&self, event: TracerEvent) {
+        self.edit(|held| held.push(event));
+    }
+
+    /// Puts in a scene.
+    pub fn push_scene(&self, scene: ReceivedScene) {
+        self.edit(|held| held.scene = Some(scene));
+    }
+
+    /// Puts in how the connection is.
+    pub fn push_state(&self, state: LinkState) {
+        self.edit(|held| held.state = Some(state));
+    }
+
+    /// Takes everything out.
+    pub fn take(&self) -> Delivery {
+        self.edit(std::mem::take)
+    }
+
+    fn edit<T>(&self, edit: impl FnOnce(&mut Delivery) -> T) -> T {
+        // A panic elsewhere leaves the box consistent: every edit is complete or has not begun.
+        edit(&mut self.held.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use common::{BatchBuilder, BatchLimits, Event, PathHeader, VertexKind, VertexRecord};
+
+    use super::*;
+
+    fn batch(paths: usize) -> PathBatch {
+        let vertex = VertexRecord {
+            position: [0.0; 3],
+            normal: [0; 2],
+            kind: VertexKind::Diffuse,
+            event: Event::Diffuse,
+            material: 0,
+            primitive: 0,
+        };
+        let mut builder = BatchBuilder::new(BatchLimits { bytes: usize::MAX });
+        for _ in 0..paths {
+            let full = builder.push(&PathHeader::default(), &[vertex; 4], None);
+            assert!(full.is_none(), "the batch has no limit");
+        }
+        builder.finish().expect("a batch with paths")
+    }
+
+    fn tile(first_row: u32, rows: u32, width: u32) -> FilmTile {
+        let rgb = vec![0.0; (3 * width * rows) as usize];
+        FilmTile { sequence: 0, width, height: 64, first_row, steps: 0, rgb }
+    }
+
+    #[test]
+    fn the_oldest_batches_go_and_are_counted() {
+        let inbox = Inbox::default();
+        let large = batch(20_000);
+        for sequence in 0..30 {
+            inbox.push(TracerEvent::Paths(large.clone().with_sequence(sequence)));
+        }
+        let delivery = inbox.take();
+        let bytes: usize = delivery.batches.iter().map(PathBatch::byte_len).sum();
+        assert!(bytes <= BATCH_BYTES, "{bytes} bytes wait");
+        assert_eq!(
+            delivery.batches.back().map(PathBatch::sequence),
+            Some(29),
+            "the newest is kept"
+        );
+        let kept = delivery.batches.len() as u64;
+        assert_eq!((delivery.gap.batches, delivery.gaps), (30 - kept, 30 - kept), "losses");
+        assert_eq!(delivery.gap.paths, (30 - kept) * 20_000, "lost paths");
+        assert!(inbox.take().batches.is_empty(), "taken once");
+    }
+
+    #[test]
+    fn only_the_newest_tile_of_a_row_waits() {
+        let inbox = Inbox::default();
+        for _ in 0..100 {
+            inbox.push(TracerEvent::Film(tile(0, 32, 8)));
+            inbox.push(TracerEvent::Film(tile(32, 32, 8)));
+        }
+        assert_eq!(inbox.take().film.len(), 2, "two halves");
+        inbox.push(TracerEvent::Film(tile(0, 32, 8)));
+        inbox.push(TracerEvent::Film(tile(32, 32, 16)));
+        assert_eq!(inbox.take().film.len(), 1, "a film of another size replaces the first");
+    }
+
+    #[test]
+    fn gaps_add_up() {
+        let inbox = Inbox::default();
+        let gap = Gap { batches: 1, paths: u64::MAX, bytes: 3 };
+        inbox.push(TracerEvent::Gap(gap));
+        inbox.push(TracerEvent::Gap(gap));
+        let delivery = inbox.take();
+        assert_eq!((delivery.gaps, delivery.gap.batches), (2, 2), "two gaps");
+        assert_eq!(delivery.gap.paths, u64::MAX, "absurd counts do not overflow");
+    }
+}

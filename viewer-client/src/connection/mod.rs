@@ -1,0 +1,172 @@
+//! The connection to a daemon: a thread of its own that connects, listens, and connects again.
+//!
+//! The window never waits for the network: it takes what lies in the [`Inbox`].
+
+mod backoff;
+mod inbox;
+mod session;
+
+pub use backoff::delay;
+pub use inbox::{Delivery, Inbox};
+pub use session::{SceneFetcher, Session, SessionError};
+
+use std::fmt;
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use std::time::Instant;
+
+use proto::{ReceivedScene, TracerEvent};
+use tokio::sync::Notify;
+use tokio::task::JoinSet;
+use tokio_util::sync::CancellationToken;
+
+use crate::status::LinkState;
+
+/// Called whenever something new lies in the inbox.
+pub type Waker = Box<dyn Fn() + Send + Sync>;
+
+/// A connection that mends itself. Dropping it says goodbye and waits for its thread.
+pub struct Link {
+    address: String,
+    inbox: Arc<Inbox>,
+    retry_now: Arc<Notify>,
+    shutdown: CancellationToken,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl fmt::Debug for Link {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Link").field("address", &self.address).finish_non_exhaustive()
+    }
+}
+
+impl Link {
+    /// Begins to connect to `address` (HOST:PORT).
+    pub fn start(address: String, waker: Waker) -> std::io::Result<Self> {
+        let inbox = Arc::new(Inbox::default());
+        let retry_now = Arc::new(Notify::new());
+        let shutdown = CancellationToken::new();
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+        let keeper = Keeper {
+            address: address.clone(),
+            inbox: Arc::clone(&inbox),
+            retry_now: Arc::clone(&retry_now),
+            shutdown: shutdown.clone(),
+            waker,
+            held_hash: String::new(),
+        };
+        let thread = std::thread::Builder::new()
+            .name("connection".to_owned())
+            .spawn(move || runtime.block_on(keeper.run()))?;
+        Ok(Self { address, inbox, retry_now, shutdown, thread: Some(thread) })
+    }
+
+    /// Where the daemon should be.
+    pub fn address(&self) -> &str {
+        &self.address
+    }
+
+    /// Takes everything that came.
+    pub fn take(&self) -> Delivery {
+        self.inbox.take()
+    }
+
+    /// Ends the wait for the next attempt.
+    pub fn retry_now(&self) {
+        self.retry_now.notify_one();
+    }
+}
+
+impl Drop for Link {
+    fn drop(&mut self) {
+        self.shutdown.cancel();
+        if let Some(thread) = self.thread.take()
+            && thread.join().is_err()
+        {
+            tracing::error!("the connection's thread panicked");
+        }
+    }
+}
+
+/// What the connection's thread owns.
+struct Keeper {
+    address: String,
+    inbox: Arc<Inbox>,
+    retry_now: Arc<Notify>,
+    shutdown: CancellationToken,
+    waker: Waker,
+    /// The scene that was delivered last; it is not fetched again.
+    held_hash: String,
+}
+
+impl Keeper {
+    async fn run(mut self) {
+        let shutdown = self.shutdown.clone();
+        let mut failures = 0;
+        loop {
+            self.set_state(LinkState::Connecting);
+            let ended = tokio::select! {
+                () = shutdown.cancelled() => return,
+                opened = Session::open(&self.address, "Lvis viewer") => match opened {
+                    Ok(session) => self.listen(session, &mut failures).await,
+                    Err(error) => Some(error),
+                },
+            };
+            let Some(error) = ended else { return };
+            failures += 1;
+            let wait = delay(failures);
+            tracing::info!("{error}; next attempt in {:.1} s", wait.as_secs_f32());
+            let retry_at = Instant::now() + wait;
+            self.set_state(LinkState::Disconnected { reason: error.to_string(), retry_at });
+            tokio::select! {
+                () = shutdown.cancelled() => return,
+                () = self.retry_now.notified() => {}
+                () = tokio::time::sleep(wait) => {}
+            }
+        }
+    }
+
+    /// Listens until the session ends; `None` when this viewer ended it.
+    async fn listen(&mut self, mut session: Session, failures: &mut u32) -> Option<SessionError> {
+        let shutdown = self.shutdown.clone();
+        let mut fetching: JoinSet<Result<Option<ReceivedScene>, SessionError>> = JoinSet::new();
+        loop {
+            tokio::select! {
+                () = shutdown.cancelled() => {
+                    session.leave().await;
+                    return None;
+                }
+                Some(fetched) = fetching.join_next() => match fetched {
+                    Ok(Ok(scene)) => self.deliver_scene(scene),
+                    Ok(Err(error)) => return Some(error),
+                    Err(error) => tracing::error!("fetching the scene failed: {error}"),
+                },
+                event = session.next() => match event {
+                    Ok(event) => {
+                        if matches!(event, TracerEvent::Welcome(_)) {
+                            *failures = 0;
+                            let fetch = session.scene_fetcher().fetch(self.held_hash.clone());
+                            fetching.spawn(fetch);
+                            self.set_state(LinkState::Connected);
+                        }
+                        self.inbox.push(event);
+                        (self.waker)();
+                    }
+                    Err(error) => return Some(error),
+                },
+            }
+        }
+    }
+
+    fn deliver_scene(&mut self, scene: Option<ReceivedScene>) {
+        let Some(scene) = scene else { return };
+        self.held_hash.clone_from(&scene.hash);
+        self.inbox.push_scene(scene);
+        (self.waker)();
+    }
+
+    fn set_state(&self, state: LinkState) {
+        self.inbox.push_state(state);
+        (self.waker)();
+    }
+}

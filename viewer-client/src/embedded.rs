@@ -1,0 +1,29 @@
+//! The daemon inside this program, for whoever gave no address.
+
+use std::net::{Ipv4Addr, SocketAddr};
+use std::sync::Arc;
+
+use anyhow::Context as _;
+use tracer_server::daemon::{Daemon, DaemonOptions};
+use tracer_server::scene::Scene;
+use tracer_server::scene::load::load;
+
+/// The scene that is shown when none is named.
+pub const DEFAULT_SCENE: &str = "cornell";
+
+/// Starts a daemon on a free port of this machine. It stops when it is dropped.
+pub fn start(scene: &str) -> anyhow::Result<Daemon> {
+    let loaded = load(scene)?;
+    for warning in &loaded.warnings {
+        tracing::warn!("{warning}");
+    }
+    let scene = Scene::new(&loaded.description)?;
+    for warning in scene.warnings() {
+        tracing::warn!("{warning}");
+    }
+    let options = DaemonOptions {
+        listen: SocketAddr::from((Ipv4Addr::LOCALHOST, 0)),
+        ..DaemonOptions::default()
+    };
+    Daemon::start(Arc::new(scene), &options).context("cannot start a daemon in this program")
+}

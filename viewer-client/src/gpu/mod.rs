@@ -1,0 +1,15 @@
+//! Drawing the scene and its paths with wgpu.
+//!
+//! A [`Renderer`] lives among egui's callback resources. It takes plain vertices and a [`Picture`];
+//! it knows neither the store nor the settings they come from. The picture is drawn into textures of
+//! its own, only when it changed, and copied into the window with every frame of the interface.
+
+mod composite;
+mod lines;
+mod mesh;
+mod pipeline;
+mod renderer;
+mod target;
+
+pub use lines::PageRange;
+pub use renderer::{Picture, Renderer, UploadBudget, ViewportCallback};

@@ -1,0 +1,138 @@
+//! What all pipelines share.
+
+use shaders::{Attribute, AttributeFormat, FrameUniforms, Shader};
+use wgpu::util::DeviceExt as _;
+
+use super::target::{COLOR_FORMAT, DEPTH_FORMAT, SAMPLES};
+
+/// The uniforms of a picture, in group 0 of every pipeline.
+#[derive(Debug)]
+pub(super) struct FrameGroup {
+    buffer: wgpu::Buffer,
+    pub(super) layout: wgpu::BindGroupLayout,
+    pub(super) group: wgpu::BindGroup,
+}
+
+impl FrameGroup {
+    pub(super) fn new(device: &wgpu::Device) -> Self {
+        let zeroed: FrameUniforms = bytemuck::Zeroable::zeroed();
+        let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("frame uniforms"),
+            contents: bytemuck::bytes_of(&zeroed),
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        });
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("frame"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: wgpu::BufferSize::new(size_of::<FrameUniforms>() as u64),
+                },
+                count: None,
+            }],
+        });
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("frame"),
+            layout: &layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+        });
+        Self { buffer, layout, group }
+    }
+
+    pub(super) fn write(&self, queue: &wgpu::Queue, uniforms: &FrameUniforms) {
+        queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(uniforms));
+    }
+}
+
+/// Compiles a module.
+pub(super) fn module(device: &wgpu::Device, shader: Shader) -> wgpu::ShaderModule {
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(shader.name),
+        source: wgpu::ShaderSource::Wgsl(shader.source.into()),
+    })
+}
+
+/// How a struct of the shaders crate is read, from `location` on.
+pub(super) fn attributes(list: &[Attribute], location: u32) -> Vec<wgpu::VertexAttribute> {
+    let format = |format| match format {
+        AttributeFormat::Float32x3 => wgpu::VertexFormat::Float32x3,
+        AttributeFormat::Unorm8x4 => wgpu::VertexFormat::Unorm8x4,
+        AttributeFormat::Snorm16x4 => wgpu::VertexFormat::Snorm16x4,
+        AttributeFormat::Uint8x4 => wgpu::VertexFormat::Uint8x4,
+        AttributeFormat::Uint32 => wgpu::VertexFormat::Uint32,
+    };
+    let numbered = list.iter().zip(location..);
+    numbered
+        .map(|(a, shader_location)| wgpu::VertexAttribute {
+            format: format(a.format),
+            offset: a.offset,
+            shader_location,
+        })
+        .collect()
+}
+
+/// What sets one pipeline that draws into the picture apart from the others.
+#[derive(Debug)]
+pub(super) struct Recipe<'a> {
+    pub(super) label: &'static str,
+    pub(super) module: &'a wgpu::ShaderModule,
+    pub(super) vertex: &'static str,
+    pub(super) fragment: &'static str,
+    pub(super) buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    pub(super) topology: wgpu::PrimitiveTopology,
+    /// Depth is reversed: `Greater` lets pass what is nearer.
+    pub(super) depth: wgpu::CompareFunction,
+    /// Opaque things write depth and replace colour; others blend.
+    pub(super) opaque: bool,
+}
+
+impl Recipe<'_> {
+    pub(super) fn build(&self, device: &wgpu::Device, frame: &FrameGroup) -> wgpu::RenderPipeline {
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(self.label),
+            bind_group_layouts: &[Some(&frame.layout)],
+            immediate_size: 0,
+        });
+        let blend = (!self.opaque).then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(self.label),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: self.module,
+                entry_point: Some(self.vertex),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: self.buffers,
+            },
+            primitive: wgpu::PrimitiveState {
+                topology: self.topology,
+                ..wgpu::PrimitiveState::default()
+            },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(self.opaque),
+                depth_compare: Some(self.depth),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState {
+                count: SAMPLES,
+                ..wgpu::MultisampleState::default()
+            },
+            fragment: Some(wgpu::FragmentState {
+                module: self.module,
+                entry_point: Some(self.fragment),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(wgpu::ColorTargetState {
+                    format: COLOR_FORMAT,
+                    blend,
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}

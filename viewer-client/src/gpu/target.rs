@@ -1,0 +1,75 @@
+//! The textures that the picture is drawn into.
+
+/// Half floats, so that light adds up beyond white before it is softened.
+pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Reversed depth needs floats.
+pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// Samples a pixel; four are available everywhere.
+pub(super) const SAMPLES: u32 = 4;
+
+/// A picture of one size.
+#[derive(Debug)]
+pub(super) struct Target {
+    pub(super) size: [u32; 2],
+    samples: wgpu::TextureView,
+    depth: wgpu::TextureView,
+    /// The finished picture.
+    pub(super) resolved: wgpu::TextureView,
+}
+
+impl Target {
+    pub(super) fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
+        let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let view = |label, format, sample_count, usage| {
+            let texture = device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage,
+                view_formats: &[],
+            });
+            texture.create_view(&wgpu::TextureViewDescriptor::default())
+        };
+        Self {
+            size,
+            samples: view("picture samples", COLOR_FORMAT, SAMPLES, attachment),
+            depth: view("picture depth", DEPTH_FORMAT, SAMPLES, attachment),
+            resolved: view(
+                "picture",
+                COLOR_FORMAT,
+                1,
+                attachment | wgpu::TextureUsages::TEXTURE_BINDING,
+            ),
+        }
+    }
+
+    /// Begins the picture: nothing in it, at infinity.
+    pub(super) fn begin<'a>(&self, encoder: &'a mut wgpu::CommandEncoder) -> wgpu::RenderPass<'a> {
+        encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("picture"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &self.samples,
+                depth_slice: None,
+                resolve_target: Some(&self.resolved),
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Discard,
+                },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0.0),
+                    store: wgpu::StoreOp::Discard,
+                }),
+                stencil_ops: None,
+            }),
+            timestamp_writes: None,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        })
+    }
+}

@@ -1,0 +1,232 @@
+//! The viewer without a window: the same interface, drawn into a texture and written to a file.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, bail};
+use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration, WgpuSetup};
+
+use crate::app::Viewer;
+use crate::connection::{Link, Waker};
+use crate::window::graphics_setup;
+
+/// A daemon that has sent nothing for this long will not.
+const PATIENCE: Duration = Duration::from_mins(1);
+/// How long to wait between looks into the inbox.
+const LOOK: Duration = Duration::from_millis(20);
+/// Frames that egui may need until nothing moves any more.
+const SETTLING_FRAMES: usize = 6;
+
+/// When to take the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wait {
+    /// When this many paths have come.
+    Paths(u64),
+    /// After this long.
+    Time(Duration),
+}
+
+/// Connects, waits, and writes the picture.
+pub fn run(
+    mut viewer: Viewer,
+    address: String,
+    size: [u32; 2],
+    wait: Wait,
+    file: &Path,
+) -> anyhow::Result<()> {
+    let mut stage = Stage::new(size)?;
+    let waker: Waker = Box::new(|| {});
+    viewer.set_link(Link::start(address, waker)?);
+    wait_for(&mut viewer, wait)?;
+    let image = stage.settled(&mut viewer)?;
+    image.save(file).with_context(|| format!("cannot write {}", file.display()))
+}
+
+fn wait_for(viewer: &mut Viewer, wait: Wait) -> anyhow::Result<()> {
+    let started = Instant::now();
+    let mut heard = (started, 0);
+    loop {
+        viewer.receive();
+        let done = match wait {
+            Wait::Time(duration) => started.elapsed() >= duration,
+            Wait::Paths(paths) => viewer.paths_received() >= paths && viewer.is_settled(),
+        };
+        if done {
+            return Ok(());
+        }
+        if viewer.paths_received() != heard.1 {
+            heard = (Instant::now(), viewer.paths_received());
+        }
+        if matches!(wait, Wait::Paths(_)) && heard.0.elapsed() > PATIENCE {
+            bail!(
+                "no path came for {} s after {} paths; is a daemon running at {}?",
+                PATIENCE.as_secs(),
+                heard.1,
+                viewer.status().address
+            );
+        }
+        std::thread::sleep(LOOK);
+    }
+}
+
+async fn graphics(backends: wgpu::Backends) -> Result<RenderState, egui_wgpu::WgpuError> {
+    let mut setup = graphics_setup();
+    setup.instance_descriptor.backends = wgpu::Backends::from_env().unwrap_or(backends);
+    let config = WgpuConfiguration {
+        wgpu_setup: WgpuSetup::CreateNew(setup),
+        ..WgpuConfiguration::default()
+    };
+    let instance = config.wgpu_setup.new_instance().await;
+    RenderState::create(&config, &instance, None, RendererOptions::PREDICTABLE).await
+}
+
+/// An egui context and a graphics card without a window.
+pub struct Stage {
+    ctx: egui::Context,
+    gpu: RenderState,
+    size: [u32; 2],
+    target: wgpu::Texture,
+    time: f64,
+}
+
+impl std::fmt::Debug for Stage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Stage").field("size", &self.size).finish_non_exhaustive()
+    }
+}
+
+impl Stage {
+    /// A stage of `size` pixels.
+    pub fn new(size: [u32; 2]) -> anyhow::Result<Self> {
+        let runtime = tokio::runtime::Builder::new_current_thread().build()?;
+        // Looking for OpenGL without a display makes drivers complain, so it comes last.
+        let gpu = runtime
+            .block_on(graphics(wgpu::Backends::PRIMARY))
+            .or_else(|_| runtime.block_on(graphics(wgpu::Backends::GL)))
+            .context("no graphics driver; on Debian, install mesa-vulkan-drivers")?;
+        let ctx = egui::Context::default();
+        Viewer::install(&ctx, &gpu);
+        let target = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("window"),
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: gpu.target_format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        Ok(Self { ctx, gpu, size, target, time: 0.0 })
+    }
+
+    /// Draws until nothing is left to upload and nothing moves, and reads the picture back.
+    pub fn settled(&mut self, viewer: &mut Viewer) -> anyhow::Result<image::RgbaImage> {
+        for _ in 0..SETTLING_FRAMES {
+            self.frame(viewer)?;
+        }
+        self.read_back()
+    }
+
+    /// One frame of the interface.
+    pub fn frame(&mut self, viewer: &mut Viewer) -> anyhow::Result<()> {
+        while viewer.upload(&self.gpu) {}
+        let screen = egui::vec2(self.size[0] as f32, self.size[1] as f32);
+        let input = egui::RawInput {
+            screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, screen)),
+            time: Some(self.time),
+            ..egui::RawInput::default()
+        };
+        // Half a second a frame: animations are over after a few frames.
+        self.time += 0.5;
+        let mut output = self.ctx.run_ui(input, |ui| viewer.ui(ui));
+        let primitives = self.ctx.tessellate(output.shapes, output.pixels_per_point);
+        self.draw(&primitives, &mut output.textures_delta)
+    }
+
+    fn draw(
+        &self,
+        primitives: &[egui::ClippedPrimitive],
+        textures: &mut egui::TexturesDelta,
+    ) -> anyhow::Result<()> {
+        let RenderState { device, queue, .. } = &self.gpu;
+        let mut renderer = self.gpu.renderer.write();
+        #[expect(clippy::iter_over_hash_type, reason = "textures do not depend on each other")]
+        for (id, deltas) in textures.set.drain() {
+            for delta in deltas {
+                renderer.update_texture(device, queue, id, &delta);
+            }
+        }
+        let mut encoder =
+            device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+        let screen = ScreenDescriptor { size_in_pixels: self.size, pixels_per_point: 1.0 };
+        let more = renderer.update_buffers(device, queue, &mut encoder, primitives, &screen);
+        let view = self.target.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut pass = encoder
+            .begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("window"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })],
+                ..wgpu::RenderPassDescriptor::default()
+            })
+            .forget_lifetime();
+        renderer.render(&mut pass, primitives, &screen);
+        drop(pass);
+        queue.submit(more.into_iter().chain(Some(encoder.finish())));
+        #[expect(clippy::iter_over_hash_type, reason = "textures do not depend on each other")]
+        for id in textures.free.drain() {
+            renderer.free_texture(&id);
+        }
+        drop(renderer);
+        device.poll(wgpu::PollType::wait_indefinitely()).context("the graphics driver gave up")?;
+        Ok(())
+    }
+
+    fn read_back(&self) -> anyhow::Result<image::RgbaImage> {
+        let RenderState { device, queue, .. } = &self.gpu;
+        let [width, height] = self.size;
+        let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("read back"),
+            size: u64::from(row) * u64::from(height),
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
+        encoder.copy_texture_to_buffer(
+            self.target.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &buffer,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(row),
+                    rows_per_image: None,
+                },
+            },
+            self.target.size(),
+        );
+        queue.submit(Some(encoder.finish()));
+        let (sender, receiver) = std::sync::mpsc::sync_channel(1);
+        buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+            // The receiver waits below; it is gone only when the wait failed.
+            drop(sender.send(result));
+        });
+        device.poll(wgpu::PollType::wait_indefinitely()).context("the graphics driver gave up")?;
+        receiver.recv().context("the picture was never mapped")??;
+        let mapped = buffer.get_mapped_range(..).context("the picture cannot be read")?;
+        let rows = mapped.chunks_exact(row as usize);
+        let bytes: Vec<u8> =
+            rows.flat_map(|r| r.iter().take(4 * width as usize)).copied().collect();
+        image::RgbaImage::from_raw(width, height, bytes).context("the picture has a wrong size")
+    }
+}
+
+#[cfg(test)]
+mod tests;

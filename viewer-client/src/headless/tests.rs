@@ -1,0 +1,91 @@
+//! Pictures of the whole window, drawn by whatever graphics driver there is.
+
+use image::{Rgba, RgbaImage};
+
+use super::*;
+use crate::status::Status;
+use crate::synthetic::delivery;
+
+const SIZE: [u32; 2] = [1280, 720];
+
+/// A path that crosses the view, level, at the height of 150 units; far and near of the middle.
+const FAR: &[[f32; 3]] = &[[-400.0, 150.0, -400.0], [400.0, 150.0, -400.0]];
+const NEAR: &[[f32; 3]] = &[[-400.0, 150.0, 400.0], [400.0, 150.0, 400.0]];
+
+#[expect(clippy::print_stderr, reason = "a test that was skipped must not look as if it had run")]
+fn stage() -> Option<Stage> {
+    Stage::new(SIZE)
+        .inspect_err(|error| eprintln!("skipped, because nothing can draw here: {error:#}"))
+        .ok()
+}
+
+/// The window after these commands, with these paths.
+fn picture(stage: &mut Stage, paths: &[&[[f32; 3]]], commands: &[&str]) -> RgbaImage {
+    let mut viewer = Viewer::new(Status::new("127.0.0.1:50061".to_owned(), false));
+    viewer.take(delivery(paths));
+    viewer.receive();
+    let fixed = ["camera view front", "scene grid off", "scene camera off", "cloud ends off"];
+    for command in fixed.iter().chain(commands) {
+        viewer.apply(command.parse().expect(command));
+    }
+    stage.settled(&mut viewer).expect("a picture")
+}
+
+/// A column of the viewport, left of where the paths meet at the camera.
+const COLUMN: u32 = 520;
+
+/// Rows of the column in which two pictures differ visibly.
+fn rows_that_differ(a: &RgbaImage, b: &RgbaImage) -> Vec<u32> {
+    let differs = |p: &Rgba<u8>, q: &Rgba<u8>| (0..3).any(|c| p[c].abs_diff(q[c]) > 24);
+    // The upper bar and the captions below it are left out.
+    (70..SIZE[1] - 60)
+        .filter(|y| differs(a.get_pixel(COLUMN, *y), b.get_pixel(COLUMN, *y)))
+        .collect()
+}
+
+#[test]
+fn lines_keep_their_width_whatever_their_distance() {
+    let Some(mut stage) = stage() else { return };
+    let width = "cloud width 8";
+    let strong = "cloud opacity 1";
+    let empty = picture(&mut stage, &[FAR], &["cloud shown 0"]);
+    let far = rows_that_differ(&empty, &picture(&mut stage, &[FAR], &[width, strong]));
+    let near = rows_that_differ(&empty, &picture(&mut stage, &[NEAR], &[width, strong]));
+    for rows in [&far, &near] {
+        assert!((7..=9).contains(&rows.len()), "a line of 8 pixels covers the rows {rows:?}");
+        assert!(rows.windows(2).all(|w| w[1] == w[0] + 1), "without a hole: {rows:?}");
+    }
+    assert!(near[0] < far[0], "what is nearer is seen higher above the middle");
+}
+
+#[test]
+fn surfaces_hide_what_lies_behind_them() {
+    let Some(mut stage) = stage() else { return };
+    let behind: &[[f32; 3]] = &[[-400.0, 150.0, -600.0], [400.0, 150.0, -600.0]];
+    let look = ["cloud width 8", "cloud opacity 1", "cloud hidden 0"];
+    let empty = picture(&mut stage, &[behind], &["cloud shown 0"]);
+    let hidden = picture(&mut stage, &[behind], &look);
+    assert!(rows_that_differ(&empty, &hidden).is_empty(), "the wall hides the path");
+    let [width, opacity, _] = look;
+    let shown = picture(&mut stage, &[behind], &[width, opacity, "cloud hidden 1"]);
+    assert!(!rows_that_differ(&empty, &shown).is_empty(), "unless hidden parts are wanted");
+    let x_ray = picture(&mut stage, &[behind], &[width, opacity, "scene shading off"]);
+    assert!(!rows_that_differ(&empty, &x_ray).is_empty(), "or there are no surfaces");
+}
+
+#[test]
+fn the_whole_window_is_drawn_and_drawn_alike() {
+    let Some(mut stage) = stage() else { return };
+    let first = picture(&mut stage, &[FAR, NEAR], &[]);
+    let second = picture(&mut stage, &[FAR, NEAR], &[]);
+    assert!(first == second, "the same state gives the same picture");
+    // The film is 0.1, 0.3, 0.6 everywhere: 89, 149, 203 in sRGB.
+    let film = first.pixels().filter(|p| p.0 == [89, 149, 203, 255]).count();
+    assert!(film > 10_000, "the image panel shows the film: {film} pixels");
+    let light = picture(&mut stage, &[FAR, NEAR], &["theme light"]);
+    let mean = |image: &RgbaImage| {
+        let sum: u64 = image.pixels().map(|p| u64::from(p[1])).sum();
+        sum / u64::from(SIZE[0] * SIZE[1])
+    };
+    assert!(mean(&light) > mean(&first) + 60, "the light theme is light");
+}

@@ -1,0 +1,197 @@
+//! Which key does what. The table is the help sheet, too.
+
+use egui::{Key, KeyboardShortcut, Modifiers};
+
+use crate::command::{
+    CameraCommand, CloudCommand, ColorMode, Command, ImageCommand, LayoutCommand, PanelName,
+    SceneCommand, Shading, Side, Switch, ThemeName,
+};
+use crate::world::World;
+
+/// A key and its command.
+#[derive(Clone, Copy, Debug)]
+pub struct Binding {
+    /// The key with its modifiers.
+    pub shortcut: KeyboardShortcut,
+    /// What it is for.
+    pub group: Group,
+    /// What it does, for the help sheet.
+    pub help: &'static str,
+    /// What it does in this state of affairs.
+    pub command: fn(&World<'_>) -> Command,
+}
+
+/// A part of the help sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// Moving the eye.
+    Camera,
+    /// Paths on screen.
+    Paths,
+    /// Surfaces, image and window.
+    View,
+}
+
+impl Group {
+    /// All, in the order of the help sheet.
+    pub const ALL: [Self; 3] = [Self::Camera, Self::Paths, Self::View];
+
+    /// The heading.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Camera => "Camera",
+            Self::Paths => "Paths",
+            Self::View => "Scene, image, window",
+        }
+    }
+}
+
+/// The mouse, for the help sheet; [`crate::panel`]'s viewport gives it this meaning.
+pub const MOUSE: [(&str, &str); 5] = [
+    ("Left or middle drag", "turn round the pivot; look about while flying"),
+    ("Right drag, Shift + drag", "shift the view"),
+    ("Wheel", "come closer to the point under the cursor"),
+    ("Double click", "show the whole scene"),
+    ("W A S D, Q E", "while flying: move, down and up; Shift is faster"),
+];
+
+const fn plain(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::NONE, key)
+}
+
+const fn ctrl(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::CTRL, key)
+}
+
+const fn bind(
+    shortcut: KeyboardShortcut,
+    group: Group,
+    help: &'static str,
+    command: fn(&World<'_>) -> Command,
+) -> Binding {
+    Binding { shortcut, group, help, command }
+}
+
+/// Every binding, in the order of the help sheet.
+pub const BINDINGS: &[Binding] = &[
+    bind(plain(Key::F), Group::Camera, "fly, or orbit again", |_| {
+        Command::Camera(CameraCommand::Fly(Switch::Toggle))
+    }),
+    bind(plain(Key::Num0), Group::Camera, "look through the render camera", |_| {
+        Command::Camera(CameraCommand::Through(Switch::Toggle))
+    }),
+    bind(plain(Key::Home), Group::Camera, "show the whole scene", |_| {
+        Command::Camera(CameraCommand::Frame)
+    }),
+    bind(plain(Key::Num1), Group::Camera, "from the front", |_| view(Side::Front)),
+    bind(plain(Key::Num3), Group::Camera, "from the right", |_| view(Side::Right)),
+    bind(plain(Key::Num7), Group::Camera, "from above", |_| view(Side::Top)),
+    bind(ctrl(Key::Num1), Group::Camera, "from the back", |_| view(Side::Back)),
+    bind(ctrl(Key::Num3), Group::Camera, "from the left", |_| view(Side::Left)),
+    bind(ctrl(Key::Num7), Group::Camera, "from below", |_| view(Side::Bottom)),
+    bind(plain(Key::Space), Group::Paths, "freeze the cloud, or let it go on", |_| {
+        Command::Cloud(CloudCommand::Freeze(Switch::Toggle))
+    }),
+    bind(plain(Key::Backspace), Group::Paths, "forget every path", |_| {
+        Command::Cloud(CloudCommand::Clear)
+    }),
+    bind(plain(Key::C), Group::Paths, "colour: radiance, strategy, length", |world| {
+        let next = after(&ColorMode::ALL, world.settings.cloud.color);
+        Command::Cloud(CloudCommand::Color(next))
+    }),
+    bind(plain(Key::OpenBracket), Group::Paths, "thinner lines", |w| width(w, 1.0 / 1.25)),
+    bind(plain(Key::CloseBracket), Group::Paths, "thicker lines", |w| width(w, 1.25)),
+    bind(plain(Key::L), Group::Paths, "tint the light end and the camera end", |_| {
+        Command::Cloud(CloudCommand::Ends(Switch::Toggle))
+    }),
+    bind(plain(Key::Z), Group::View, "shaded, edges, wireframe, off", |world| {
+        let next = after(&Shading::ALL, world.settings.scene.shading);
+        Command::Scene(SceneCommand::Shading(next))
+    }),
+    bind(plain(Key::X), Group::View, "X-ray: see through surfaces", |world| {
+        let solid = world.settings.scene.opacity > 0.99;
+        Command::Scene(SceneCommand::Opacity(if solid { 0.3 } else { 1.0 }))
+    }),
+    bind(plain(Key::B), Group::View, "cut away surfaces seen from behind", |_| {
+        Command::Scene(SceneCommand::Cutaway(Switch::Toggle))
+    }),
+    bind(plain(Key::G), Group::View, "grid", |_| {
+        Command::Scene(SceneCommand::Grid(Switch::Toggle))
+    }),
+    bind(plain(Key::Comma), Group::View, "image half a stop darker", |w| exposure(w, -0.5)),
+    bind(plain(Key::Period), Group::View, "image half a stop brighter", |w| exposure(w, 0.5)),
+    bind(plain(Key::I), Group::View, "image panel", |_| panel(PanelName::Image)),
+    bind(plain(Key::P), Group::View, "statistics panel", |_| panel(PanelName::Statistics)),
+    bind(plain(Key::T), Group::View, "dark or light", |_| {
+        Command::Layout(LayoutCommand::Theme(ThemeName::Toggle))
+    }),
+    bind(plain(Key::R), Group::View, "connect now", |_| Command::Reconnect),
+    bind(plain(Key::F1), Group::View, "this sheet; ? does it, too", |_| help()),
+    bind(ctrl(Key::Q), Group::View, "quit", |_| Command::Quit),
+];
+
+/// The commands of the keys pressed since the last frame.
+pub fn pressed(ctx: &egui::Context, world: &World<'_>, commands: &mut Vec<Command>) {
+    if ctx.egui_wants_keyboard_input() {
+        return;
+    }
+    if ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Questionmark)) {
+        commands.push(help());
+    }
+    // Those with modifiers first: without them, a key also fits its plain binding.
+    let (plain, modified): (Vec<&Binding>, Vec<&Binding>) =
+        BINDINGS.iter().partition(|b| b.shortcut.modifiers == Modifiers::NONE);
+    for binding in modified.into_iter().chain(plain) {
+        if ctx.input_mut(|input| input.consume_shortcut(&binding.shortcut)) {
+            commands.push((binding.command)(world));
+        }
+    }
+}
+
+fn help() -> Command {
+    Command::Layout(LayoutCommand::Help(Switch::Toggle))
+}
+
+fn view(side: Side) -> Command {
+    Command::Camera(CameraCommand::View(side))
+}
+
+fn panel(name: PanelName) -> Command {
+    Command::Layout(LayoutCommand::Panel(name, Switch::Toggle))
+}
+
+fn width(world: &World<'_>, factor: f32) -> Command {
+    let width = (world.settings.cloud.width * factor).clamp(0.25, 20.0);
+    Command::Cloud(CloudCommand::Width(width))
+}
+
+fn exposure(world: &World<'_>, stops: f32) -> Command {
+    let exposure = (world.settings.image.exposure + stops).clamp(-20.0, 20.0);
+    Command::Image(ImageCommand::Exposure(exposure))
+}
+
+/// The choice after the present one, round and round.
+fn after<T: Copy + PartialEq>(all: &[T], present: T) -> T {
+    let next = all.iter().position(|c| *c == present).map_or(0, |i| (i + 1) % all.len());
+    all.get(next).copied().unwrap_or(present)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_key_has_two_meanings() {
+        for (i, a) in BINDINGS.iter().enumerate() {
+            for b in &BINDINGS[i + 1..] {
+                assert!(a.shortcut != b.shortcut, "`{}` and `{}` share a key", a.help, b.help);
+            }
+        }
+    }
+
+    #[test]
+    fn choices_go_round() {
+        assert_eq!(after(&[1, 2, 3], 1), 2, "the next");
+        assert_eq!(after(&[1, 2, 3], 3), 1, "round");
+    }
+}

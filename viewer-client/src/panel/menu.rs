@@ -1,0 +1,79 @@
+//! The bar at the head: menus, and what is being looked at.
+
+use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
+
+use super::Panel;
+use crate::command::{Command, LayoutCommand, PanelName, Switch, ThemeName};
+use crate::keys::{BINDINGS, Binding, Group};
+use crate::theme;
+use crate::world::World;
+
+/// Menus.
+#[derive(Debug)]
+pub(super) struct Menu;
+
+impl Panel for Menu {
+    fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+        MenuBar::new().ui(ui, |ui| {
+            let name = RichText::new("Lvis").strong().size(16.0).color(theme::ACCENT);
+            ui.add(Label::new(name).selectable(false));
+            ui.add_space(8.0);
+            ui.menu_button("Camera", |ui| group(ui, world, Group::Camera, commands));
+            ui.menu_button("Paths", |ui| group(ui, world, Group::Paths, commands));
+            ui.menu_button("View", |ui| {
+                windows(ui, world, commands);
+                ui.separator();
+                group(ui, world, Group::View, commands);
+            });
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                right(ui, world, commands);
+            });
+        });
+    }
+}
+
+/// Every key of a group, as a menu.
+fn group(ui: &mut Ui, world: &World<'_>, group: Group, commands: &mut Vec<Command>) {
+    for binding in BINDINGS.iter().filter(|b| b.group == group) {
+        item(ui, world, binding, commands);
+    }
+}
+
+fn item(ui: &mut Ui, world: &World<'_>, binding: &Binding, commands: &mut Vec<Command>) {
+    let label = super::widgets::capitalised(binding.help);
+    let key = ui.ctx().format_shortcut(&binding.shortcut);
+    if ui.add(Button::new(label).shortcut_text(key)).clicked() {
+        commands.push((binding.command)(world));
+        ui.close();
+    }
+}
+
+fn windows(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    for name in PanelName::ALL {
+        let mut open = world.settings.layout.is_open(name);
+        if ui.checkbox(&mut open, name.title()).changed() {
+            commands.push(Command::Layout(LayoutCommand::Panel(name, Switch::to(open))));
+        }
+    }
+}
+
+fn right(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    let (symbol, tip) = if world.settings.layout.dark {
+        ("Light", "Light colours (T)")
+    } else {
+        ("Dark", "Dark colours (T)")
+    };
+    if ui.button(symbol).on_hover_text(tip).clicked() {
+        commands.push(Command::Layout(LayoutCommand::Theme(ThemeName::Toggle)));
+    }
+    if let Some(welcome) = &world.status.welcome {
+        let tip = format!(
+            "Scene {}, paths of up to {} edges, film of {} × {} pixels",
+            welcome.scene_hash, welcome.max_edges, welcome.camera.width, welcome.camera.height
+        );
+        ui.add_space(4.0);
+        ui.add(Label::new(RichText::new(&welcome.scene_name).strong()).selectable(false))
+            .on_hover_text(tip);
+        ui.add(Label::new(RichText::new("scene").weak()).selectable(false));
+    }
+}

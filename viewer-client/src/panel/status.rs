@@ -1,0 +1,96 @@
+//! The bar at the foot: connection, rates, losses, memory.
+
+use egui::{Align, Label, Layout, RichText, Ui};
+
+use super::Panel;
+use super::widgets::dot;
+use crate::command::{Command, LayoutCommand, Switch};
+use crate::format;
+use crate::status::{LinkState, Status};
+use crate::theme;
+use crate::world::World;
+
+/// The state of the connection in one line.
+#[derive(Debug)]
+pub(super) struct StatusBar;
+
+impl Panel for StatusBar {
+    fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+        ui.horizontal(|ui| {
+            connection(ui, world, commands);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let keys =
+                    ui.button("F1  Keys").on_hover_text("Every key and mouse button (F1, ?)");
+                if keys.clicked() {
+                    commands.push(Command::Layout(LayoutCommand::Help(Switch::Toggle)));
+                }
+                figures(ui, world);
+            });
+        });
+    }
+}
+
+fn connection(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    let status = world.status;
+    let place = place(status);
+    match &status.link {
+        LinkState::Connected => {
+            dot(ui, theme::GOOD);
+            let text = format!("Connected to {place}");
+            let tip = status.welcome.as_ref().map_or_else(String::new, |w| {
+                format!(
+                    "Session {}, daemon {}, connection made anew {} times",
+                    w.session, w.server_version, status.reconnects
+                )
+            });
+            ui.add(Label::new(text).selectable(false)).on_hover_text(tip);
+        }
+        LinkState::Connecting => {
+            dot(ui, theme::BUSY);
+            ui.add(Label::new(format!("Connecting to {place} …")).selectable(false));
+        }
+        LinkState::Disconnected { reason, retry_at } => {
+            dot(ui, theme::BAD);
+            let seconds = retry_at.saturating_duration_since(world.now).as_secs_f32().ceil();
+            let text = format!("Disconnected: {reason}; retrying in {seconds:.0} s");
+            ui.add(Label::new(text).selectable(false).truncate());
+            if ui.small_button("Now").on_hover_text("Connect now (R)").clicked() {
+                commands.push(Command::Reconnect);
+            }
+        }
+    }
+}
+
+/// Where the daemon is, in words.
+fn place(status: &Status) -> String {
+    if status.embedded { "the built-in daemon".to_owned() } else { status.address.clone() }
+}
+
+/// Figures from right to left.
+fn figures(ui: &mut Ui, world: &World<'_>) {
+    let counts = world.store.counts();
+    let statistics = world.status.statistics.as_ref();
+    if let Some(statistics) = statistics.filter(|s| s.memory_bytes > 0) {
+        figure(ui, "daemon", &format::bytes(statistics.memory_bytes), "Memory of the daemon");
+    }
+    let held = format::bytes(world.store.byte_len() as u64);
+    figure(ui, "viewer", &held, "Memory for paths in this viewer, graphics memory included");
+    let lost = statistics.map_or(0, |s| s.paths_dropped).max(counts.dropped);
+    let tip = format!(
+        "Paths that the daemon made and this viewer never saw, in {} gaps; {} more were passed over \
+         while the cloud was frozen",
+        counts.gaps, counts.skipped
+    );
+    figure(ui, "dropped", &format::count(lost as f64), &tip);
+    let bytes = format::bytes(world.status.byte_rate.per_second() as u64);
+    let paths = format::count(world.status.path_rate.per_second());
+    figure(ui, "paths/s", &paths, &format!("Paths received a second, {bytes}/s"));
+    let mutations = statistics.map_or(0.0, |s| s.mutations_per_second);
+    figure(ui, "mutations/s", &format::count(mutations), "Steps of all chains a second");
+}
+
+fn figure(ui: &mut Ui, name: &str, value: &str, tip: &str) {
+    ui.add_space(4.0);
+    ui.add(Label::new(RichText::new(value).monospace()).selectable(false)).on_hover_text(tip);
+    ui.add(Label::new(RichText::new(name).weak()).selectable(false)).on_hover_text(tip);
+}

@@ -1,0 +1,253 @@
+//! Panels show what they should, and clicks say what they should; without a window.
+
+use std::time::{Duration, Instant};
+
+use common::{ChainTotals, FailureCount, FilmTile, Statistics, StrategyStatistics};
+use egui::accesskit::Role as WidgetRole;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use super::*;
+use crate::camera::ViewCamera;
+use crate::command::{
+    CameraCommand, CloudCommand, ImageCommand, LayoutCommand, SceneCommand, Switch, ThemeName,
+};
+use crate::film::Film;
+use crate::settings::Settings;
+use crate::status::{LinkState, Status};
+use crate::store::Store;
+use crate::synthetic::welcome;
+
+/// Everything a panel may read, and what it said.
+struct Stage {
+    settings: Settings,
+    camera: ViewCamera,
+    status: Status,
+    store: Store,
+    film: Film,
+    panel: Box<dyn Panel>,
+    said: Vec<Command>,
+}
+
+impl Stage {
+    fn new(panel: impl Panel + 'static) -> Self {
+        Self {
+            settings: Settings::default(),
+            camera: ViewCamera::default(),
+            status: Status::new("127.0.0.1:50061".to_owned(), false),
+            store: Store::new(64 << 20),
+            film: Film::default(),
+            panel: Box::new(panel),
+            said: Vec::new(),
+        }
+    }
+
+    fn harness(self) -> Harness<'static, Self> {
+        Harness::builder().with_size(egui::vec2(520.0, 700.0)).build_ui_state(
+            |ui, stage: &mut Self| {
+                let world = World {
+                    settings: &stage.settings,
+                    camera: &stage.camera,
+                    status: &stage.status,
+                    store: &stage.store,
+                    film: &stage.film,
+                    model: None,
+                    now: Instant::now(),
+                };
+                stage.panel.ui(ui, &world, &mut stage.said);
+            },
+            self,
+        )
+    }
+}
+
+fn statistics() -> Statistics {
+    let failures = vec![FailureCount { reason: 1, count: 500 }];
+    let strategy = |accepted| StrategyStatistics {
+        proposed: 2000,
+        generated: 1500,
+        accepted,
+        acceptance_sum: 900.0,
+        failures: failures.clone(),
+    };
+    Statistics {
+        mutations_per_second: 1_234_567.0,
+        strategies: vec![strategy(250), strategy(1480)],
+        normalization: 0.25,
+        normalization_error: 0.0005,
+        totals: ChainTotals { rays: 4_500_000, ..ChainTotals::default() },
+        ..Statistics::default()
+    }
+}
+
+/// True when some label contains `text`.
+fn shows(harness: &Harness<'_, Stage>, text: &str) -> bool {
+    harness.query_all_by_label_contains(text).next().is_some()
+}
+
+#[test]
+fn statistics_show_rates_and_fates() {
+    let mut stage = Stage::new(statistics::StatisticsPanel);
+    stage.status.welcome(welcome());
+    stage.status.statistics(statistics());
+    let mut harness = stage.harness();
+    harness.run();
+    for text in [
+        "1.23 M",
+        "0.2500 ± 0.2 %",
+        "bidirectional",
+        "lens",
+        "2.00 k",
+        "75.0 %",
+        "12.5 %",
+        "74.0 %",
+        "4.50 M",
+    ] {
+        assert!(shows(&harness, text), "`{text}` is missing");
+    }
+    harness.get_by_label("lens").hover();
+    harness.run_steps(30);
+    assert!(shows(&harness, "failed: off film"), "the reasons come with the pointer");
+}
+
+#[test]
+fn empty_panels_say_what_will_come() {
+    let mut harness = Stage::new(statistics::StatisticsPanel).harness();
+    harness.run();
+    assert!(shows(&harness, "No statistics yet"), "no counts");
+    let mut harness = Stage::new(image::ImagePanel::default()).harness();
+    harness.run();
+    assert!(shows(&harness, "No image yet"), "no image");
+}
+
+#[test]
+fn the_image_panel_shows_the_film() {
+    let mut stage = Stage::new(image::ImagePanel::default());
+    let rgb = vec![0.5; 40 * 30 * 3];
+    let tile = FilmTile { sequence: 1, width: 40, height: 30, first_row: 0, steps: 2400, rgb };
+    assert!(stage.film.accept(&tile), "a whole image");
+    let mut harness = stage.harness();
+    harness.run();
+    assert!(shows(&harness, "40 × 30, 2 mutations a pixel"), "size and effort");
+    harness.get_by_label("2:1").click();
+    harness.run();
+    assert_eq!(harness.state().said, [Command::Image(ImageCommand::Zoom(2.0))], "zoom");
+}
+
+#[test]
+fn the_status_bar_tells_every_state() {
+    let state = |link: LinkState| {
+        let mut stage = Stage::new(status::StatusBar);
+        stage.status.link = link;
+        let mut harness = stage.harness();
+        harness.run_steps(3);
+        harness
+    };
+    assert!(shows(&state(LinkState::Connecting), "Connecting to 127.0.0.1:50061"), "connecting");
+    assert!(shows(&state(LinkState::Connected), "Connected to 127.0.0.1:50061"), "connected");
+    let retry_at = Instant::now() + Duration::from_secs(90);
+    let mut lost = state(LinkState::Disconnected { reason: "gone".to_owned(), retry_at });
+    assert!(shows(&lost, "Disconnected: gone; retrying in"), "lost, with its reason");
+    lost.get_by_label("Now").click();
+    lost.run_steps(3);
+    assert_eq!(lost.state().said, [Command::Reconnect], "connect now");
+}
+
+#[test]
+fn the_cloud_panel_speaks_in_commands() {
+    let mut harness = Stage::new(cloud::Cloud).harness();
+    harness.run();
+    harness.get_by_label("Freeze").click();
+    harness.run();
+    harness.get_by_label("Clear").click();
+    harness.run();
+    harness.get_by_label("Tint start and end").click();
+    harness.run();
+    let expected =
+        [CloudCommand::Freeze(Switch::On), CloudCommand::Clear, CloudCommand::Ends(Switch::Off)];
+    assert_eq!(harness.state().said, expected.map(Command::Cloud), "three clicks");
+}
+
+#[test]
+fn a_slider_at_rest_says_nothing() {
+    let mut stage = Stage::new(cloud::Cloud);
+    // Values that no slider can show exactly.
+    stage.settings.cloud.width = 0.123_456;
+    stage.settings.cloud.fade = 1e9;
+    let mut harness = stage.harness();
+    harness.run();
+    assert_eq!(harness.state().said, [], "rounding is not the user's hand");
+}
+
+#[test]
+fn the_scene_panel_speaks_in_commands() {
+    let mut harness = Stage::new(scene::Scene).harness();
+    harness.run();
+    for label in ["Grid", "Frame all", "Fly"] {
+        harness.get_by_label(label).click();
+        harness.run();
+    }
+    let expected = [
+        Command::Scene(SceneCommand::Grid(Switch::Off)),
+        Command::Camera(CameraCommand::Frame),
+        Command::Camera(CameraCommand::Fly(Switch::Toggle)),
+    ];
+    assert_eq!(harness.state().said, expected, "three clicks");
+}
+
+#[test]
+fn menus_hold_every_key() {
+    let mut stage = Stage::new(menu::Menu);
+    stage.status.welcome(welcome());
+    let mut harness = stage.harness();
+    harness.run();
+    assert!(shows(&harness, "a room"), "the scene's name");
+    harness.get_by_label("Light").click();
+    harness.run();
+    harness.get_by_label("Paths").click();
+    harness.run();
+    harness.get_by_label_contains("Forget every path").click();
+    harness.run();
+    let expected = [
+        Command::Layout(LayoutCommand::Theme(ThemeName::Toggle)),
+        Command::Cloud(CloudCommand::Clear),
+    ];
+    assert_eq!(harness.state().said, expected, "a button and a menu");
+}
+
+#[test]
+fn the_help_sheet_lists_every_key() {
+    let mut stage = Stage::new(help::Help);
+    stage.settings.layout.help = true;
+    let mut harness = stage.harness();
+    harness.run_steps(4);
+    for binding in crate::keys::BINDINGS {
+        assert!(shows(&harness, binding.help), "`{}` is missing", binding.help);
+    }
+}
+
+#[test]
+fn dragging_in_the_viewport_turns_the_camera() {
+    let mut harness = Stage::new(viewport::Viewport).harness();
+    harness.run_steps(2);
+    let view = harness.get_by_role_and_label(WidgetRole::Canvas, "Viewport").rect();
+    harness.drag_at(view.center());
+    harness.run_steps(1);
+    harness.hover_at(view.center() + egui::vec2(70.0, 0.0));
+    harness.run_steps(2);
+    harness.drop_at(view.center() + egui::vec2(70.0, 0.0));
+    harness.run_steps(1);
+    let turned: f32 = harness
+        .state()
+        .said
+        .iter()
+        .map(|command| match command {
+            Command::Camera(CameraCommand::Orbit(right, up)) => {
+                assert_eq!(*up, 0.0, "a level drag");
+                *right
+            }
+            other => panic!("{other} instead of a turn"),
+        })
+        .sum();
+    assert!((turned - 20.0).abs() < 0.5, "a tenth of the height turns 20 degrees, not {turned}");
+}

@@ -1,0 +1,91 @@
+//! Mouse and held keys as camera commands.
+
+use egui::{Key, PointerButton, Response, Ui, Vec2, vec2};
+
+use crate::command::{CameraCommand, Command};
+use crate::world::World;
+
+/// Degrees the view turns for a drag over the height of the viewport.
+const TURN: f32 = 200.0;
+/// Points of the wheel that come closer by a factor of e.
+const WHEEL: f32 = 320.0;
+/// Sizes of the scene flown a second.
+const SPEED: f32 = 0.35;
+/// How much faster with Shift.
+const FASTER: f32 = 4.0;
+
+/// What the user does with the viewport.
+pub(super) fn read(ui: &Ui, response: &Response, world: &World<'_>, commands: &mut Vec<Command>) {
+    let mut push = |command| commands.push(Command::Camera(command));
+    if let Some(command) = drag(ui, response, world) {
+        push(command);
+    }
+    if response.double_clicked() {
+        push(CameraCommand::Frame);
+    }
+    if response.contains_pointer()
+        && let Some(command) = wheel(ui, response)
+    {
+        push(command);
+    }
+    if world.camera.is_flying()
+        && let Some(command) = flight(ui)
+    {
+        push(command);
+    }
+}
+
+fn drag(ui: &Ui, response: &Response, world: &World<'_>) -> Option<CameraCommand> {
+    let delta = response.drag_delta() / response.rect.height().max(1.0);
+    if delta == Vec2::ZERO {
+        return None;
+    }
+    let shift = ui.input(|input| input.modifiers.shift);
+    let secondary = response.dragged_by(PointerButton::Secondary);
+    if secondary || shift {
+        return Some(CameraCommand::Pan(delta.x, -delta.y));
+    }
+    // Screens count downwards; a drag to the right turns the scene to the right.
+    Some(if world.camera.is_flying() {
+        CameraCommand::Look(TURN * delta.x * 0.5, -TURN * delta.y * 0.5)
+    } else {
+        CameraCommand::Orbit(TURN * delta.x, -TURN * delta.y)
+    })
+}
+
+fn wheel(ui: &Ui, response: &Response) -> Option<CameraCommand> {
+    let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta.y, i.zoom_delta()));
+    let factor = (scroll / WHEEL).exp() * pinch;
+    if factor == 1.0 {
+        return None;
+    }
+    let half_height = (0.5 * response.rect.height()).max(1.0);
+    let centre = response.rect.center();
+    let at = response.hover_pos().map_or(Vec2::ZERO, |p| (p - centre) / half_height);
+    Some(CameraCommand::Zoom { factor: factor.clamp(0.1, 10.0), at: [at.x, -at.y] })
+}
+
+/// Steps while keys are held; time is what it took to draw the last frame.
+fn flight(ui: &Ui) -> Option<CameraCommand> {
+    if ui.ctx().egui_wants_keyboard_input() {
+        return None;
+    }
+    let (step, seconds) = ui.input(|input| {
+        let axis = |plus: Key, minus: Key| {
+            f32::from(u8::from(input.key_down(plus))) - f32::from(u8::from(input.key_down(minus)))
+        };
+        let step = [axis(Key::W, Key::S), axis(Key::D, Key::A), axis(Key::E, Key::Q)];
+        let speed = if input.modifiers.shift { SPEED * FASTER } else { SPEED };
+        (step.map(|s| s * speed), input.stable_dt.min(0.1))
+    });
+    if step == [0.0; 3] {
+        return None;
+    }
+    ui.ctx().request_repaint();
+    Some(CameraCommand::Move(step.map(|s| s * seconds)))
+}
+
+/// Half the size of a rectangle that fills `gate` of `whole`.
+pub(super) fn gate_half(whole: Vec2, width: f32, height: f32) -> Vec2 {
+    0.5 * vec2(whole.x * width, whole.y * height)
+}

@@ -1,0 +1,181 @@
+//! What is written over the view: axes, legend, the render camera's gate, and why it is empty.
+
+use egui::{
+    Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, StrokeKind, Ui, pos2, vec2,
+};
+use glam::Vec3;
+
+use super::gesture::gate_half;
+use crate::command::ColorMode;
+use crate::format;
+use crate::status::LinkState;
+use crate::theme;
+use crate::world::World;
+
+/// Distance of texts from the edge in points.
+const MARGIN: f32 = 14.0;
+
+/// Writes over the view.
+pub(super) fn paint(ui: &Ui, rect: Rect, world: &World<'_>) {
+    let painter = ui.painter().with_clip_rect(rect);
+    let ink = if world.settings.layout.dark {
+        Color32::from_rgb(214, 219, 227)
+    } else {
+        Color32::from_rgb(40, 44, 50)
+    };
+    gate(&painter, rect, world);
+    if world.model.is_none() {
+        nothing_yet(&painter, rect, world, ink);
+        return;
+    }
+    axes(&painter, rect, world, ink);
+    captions(&painter, rect, world, ink);
+    legend(&painter, rect, world, ink);
+}
+
+/// Darkens what the render camera does not see.
+fn gate(painter: &Painter, rect: Rect, world: &World<'_>) {
+    let Some(gate) = world.camera.gate(rect.aspect_ratio()) else { return };
+    let half = gate_half(rect.size(), gate.width, gate.height);
+    let inner = Rect::from_center_size(rect.center(), 2.0 * half);
+    let shade = Color32::from_black_alpha(120);
+    let bands = [
+        Rect::from_min_max(rect.min, pos2(rect.right(), inner.top())),
+        Rect::from_min_max(pos2(rect.left(), inner.bottom()), rect.max),
+        Rect::from_min_max(pos2(rect.left(), inner.top()), inner.left_bottom()),
+        Rect::from_min_max(inner.right_top(), pos2(rect.right(), inner.bottom())),
+    ];
+    for band in bands {
+        painter.rect_filled(band, CornerRadius::ZERO, shade);
+    }
+    let stroke = Stroke::new(1.0, Color32::from_white_alpha(110));
+    painter.rect_stroke(inner, CornerRadius::ZERO, stroke, StrokeKind::Outside);
+}
+
+/// Why there is no scene, and what to do.
+fn nothing_yet(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
+    let status = world.status;
+    let (title, lines) = match &status.link {
+        LinkState::Connecting => {
+            (format!("Connecting to {} …", status.address), vec!["One moment.".to_owned()])
+        }
+        LinkState::Connected => {
+            ("Connected".to_owned(), vec!["The scene is on its way.".to_owned()])
+        }
+        LinkState::Disconnected { reason, retry_at } => {
+            let seconds = retry_at.saturating_duration_since(world.now).as_secs_f32().ceil();
+            let lines = vec![
+                reason.clone(),
+                format!("Start a daemon with  tracer-server serve --listen {}", status.address),
+                format!("Retrying in {seconds:.0} s; R connects now."),
+            ];
+            ("No connection".to_owned(), lines)
+        }
+    };
+    let centre = rect.center() - vec2(0.0, 10.0 * lines.len() as f32);
+    painter.text(centre, Align2::CENTER_BOTTOM, title, FontId::proportional(22.0), ink);
+    for (i, line) in lines.into_iter().enumerate() {
+        let place = centre + vec2(0.0, 12.0 + 21.0 * i as f32);
+        let faint = ink.gamma_multiply(0.7);
+        painter.text(place, Align2::CENTER_TOP, line, FontId::proportional(14.0), faint);
+    }
+}
+
+/// Three short axes in the lower left corner, as the eye sees them.
+fn axes(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
+    let lens = world.camera.lens(1.0);
+    let centre = rect.left_bottom() + vec2(MARGIN + 26.0, -MARGIN - 26.0);
+    let mut arms = [
+        (Vec3::X, "x", Color32::from_rgb(236, 92, 86)),
+        (Vec3::Y, "y", Color32::from_rgb(124, 190, 84)),
+        (Vec3::Z, "z", Color32::from_rgb(82, 142, 240)),
+    ];
+    // The farthest first, so that nearer arms lie on top.
+    arms.sort_by(|a, b| b.0.dot(lens.forward).total_cmp(&a.0.dot(lens.forward)));
+    painter.circle_filled(centre, 33.0, Color32::from_black_alpha(36));
+    for (axis, name, color) in arms {
+        let tip = centre + 24.0 * vec2(axis.dot(lens.right), -axis.dot(lens.up));
+        let away = axis.dot(lens.forward) > 0.2;
+        let color = if away { color.gamma_multiply(0.55) } else { color };
+        painter.line_segment([centre, tip], Stroke::new(2.0, color));
+        painter.circle_filled(tip, 6.5, color);
+        let font = FontId::proportional(10.0);
+        painter.text(tip, Align2::CENTER_CENTER, name, font, Color32::from_black_alpha(220));
+    }
+    painter.circle_filled(centre, 1.5, ink);
+}
+
+/// How one looks, and what is shown, in the upper corners.
+fn captions(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
+    let camera = world.camera;
+    let mode = match (camera.is_through(), camera.is_flying()) {
+        (true, _) => "Render camera",
+        (false, true) => "Fly   W A S D  Q E",
+        (false, false) => "Orbit",
+    };
+    let corner = rect.left_top() + vec2(MARGIN, MARGIN);
+    text(painter, corner, Align2::LEFT_TOP, mode, ink);
+    let shown = (world.settings.cloud.shown as usize).min(world.store.len());
+    let paths = format!(
+        "{} of {} paths",
+        format::count(shown as f64),
+        format::count(world.store.len() as f64)
+    );
+    let corner = rect.right_top() + vec2(-MARGIN, MARGIN);
+    text(painter, corner, Align2::RIGHT_TOP, &paths, ink);
+    if world.settings.cloud.frozen {
+        let place = corner + vec2(0.0, 24.0);
+        text(painter, place, Align2::RIGHT_TOP, "Frozen; Space goes on", theme::BUSY);
+    } else if !world.status.is_connected() {
+        let place = corner + vec2(0.0, 24.0);
+        text(painter, place, Align2::RIGHT_TOP, "Not connected", theme::BAD);
+    }
+}
+
+/// A text on a veil, so that paths behind it do not blur it.
+fn text(painter: &Painter, place: Pos2, anchor: Align2, text: &str, color: Color32) {
+    let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(13.0), color);
+    let rect = anchor.anchor_size(place, galley.size());
+    veil(painter, rect, color);
+    painter.galley(rect.min, galley, color);
+}
+
+/// Dims what lies behind light texts, and brightens it behind dark ones.
+fn veil(painter: &Painter, rect: Rect, ink: Color32) {
+    let light_ink = ink.intensity() > 0.4;
+    let shade =
+        if light_ink { Color32::from_black_alpha(130) } else { Color32::from_white_alpha(150) };
+    painter.rect_filled(rect.expand2(vec2(7.0, 3.0)), 5.0, shade);
+}
+
+/// What the colours say, in the lower right corner.
+fn legend(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
+    let mut place = rect.right_bottom() + vec2(-MARGIN, -MARGIN);
+    let mut entry = |label: &str, color: Color32| {
+        let galley = painter.layout_no_wrap(label.to_owned(), FontId::proportional(12.0), ink);
+        let left = place - vec2(galley.size().x, galley.size().y);
+        let rect = Rect::from_min_max(left - vec2(16.0, 0.0), place);
+        veil(painter, rect, ink);
+        painter.circle_filled(left + vec2(-10.0, 0.5 * galley.size().y), 4.0, color);
+        painter.galley(left, galley, ink);
+        place.y -= 22.0;
+    };
+    let cloud = &world.settings.cloud;
+    if cloud.ends {
+        entry("end, at the camera", theme::CAMERA_END);
+        entry("start, on the light", theme::LIGHT_END);
+    }
+    match cloud.color {
+        ColorMode::Radiance => {}
+        ColorMode::Strategy => {
+            let names = world.status.welcome.as_ref().map(|w| w.strategies.as_slice());
+            for (index, name) in names.unwrap_or_default().iter().enumerate().rev() {
+                entry(name, theme::strategy_color(index));
+            }
+        }
+        ColorMode::Length => {
+            entry("10 edges and more", Color32::from_rgb(235, 40, 40));
+            entry("1 edge", Color32::from_rgb(40, 60, 235));
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! What the user has chosen; panels read it, [`crate::command::Command`]s change it.
+
+use crate::command::{
+    CloudCommand, ColorMode, ImageCommand, LayoutCommand, PanelName, SceneCommand, Shading,
+    ThemeName,
+};
+
+/// Every choice.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Settings {
+    /// How paths are drawn.
+    pub cloud: CloudSettings,
+    /// How the scene is drawn.
+    pub scene: SceneSettings,
+    /// How the progressive image is shown.
+    pub image: ImageSettings,
+    /// What the window holds.
+    pub layout: Layout,
+}
+
+/// How paths are drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CloudSettings {
+    /// No new paths are taken.
+    pub frozen: bool,
+    /// Width of the lines in pixels.
+    pub width: f32,
+    /// Opacity of the newest, brightest path.
+    pub opacity: f32,
+    /// Relative opacity behind surfaces.
+    pub hidden: f32,
+    /// Newer paths after which a path has faded to 1/e.
+    pub fade: f32,
+    /// How many of the newest paths are drawn.
+    pub shown: u32,
+    /// Memory for paths in MiB, graphics memory included.
+    pub budget_mib: u32,
+    /// What the colour says.
+    pub color: ColorMode,
+    /// The light end and the camera end are tinted.
+    pub ends: bool,
+    /// Radius of the dots at inner vertices in pixels.
+    pub dots: f32,
+}
+
+impl Default for CloudSettings {
+    fn default() -> Self {
+        Self {
+            frozen: false,
+            width: 1.5,
+            opacity: 0.55,
+            hidden: 0.08,
+            fade: 500.0,
+            shown: 2500,
+            budget_mib: 128,
+            color: ColorMode::Radiance,
+            ends: true,
+            dots: 0.0,
+        }
+    }
+}
+
+impl CloudSettings {
+    /// Follows a command; [`CloudCommand::Clear`] concerns the store alone.
+    pub fn apply(&mut self, command: CloudCommand) {
+        match command {
+            CloudCommand::Freeze(switch) => switch.apply(&mut self.frozen),
+            CloudCommand::Clear => {}
+            CloudCommand::Width(pixels) => self.width = pixels,
+            CloudCommand::Opacity(x) => self.opacity = x,
+            CloudCommand::Hidden(x) => self.hidden = x,
+            CloudCommand::Fade(paths) => self.fade = paths,
+            CloudCommand::Shown(paths) => self.shown = paths,
+            CloudCommand::Budget(mebibytes) => self.budget_mib = mebibytes,
+            CloudCommand::Color(mode) => self.color = mode,
+            CloudCommand::Ends(switch) => switch.apply(&mut self.ends),
+            CloudCommand::Dots(pixels) => self.dots = pixels,
+        }
+    }
+}
+
+/// How surfaces and drawing aids look.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneSettings {
+    /// How surfaces are drawn.
+    pub shading: Shading,
+    /// Opacity of all surfaces.
+    pub opacity: f32,
+    /// Surfaces that face away are almost invisible.
+    pub cutaway: bool,
+    /// Lines that belong to no path.
+    pub aids: DrawingAids,
+}
+
+/// Lines that belong to no path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawingAids {
+    /// The model of the render camera.
+    pub camera: bool,
+    /// The grid on the ground.
+    pub grid: bool,
+}
+
+impl Default for SceneSettings {
+    fn default() -> Self {
+        let aids = DrawingAids { camera: true, grid: true };
+        Self { shading: Shading::Shaded, opacity: 1.0, cutaway: true, aids }
+    }
+}
+
+impl SceneSettings {
+    /// Follows a command.
+    pub fn apply(&mut self, command: SceneCommand) {
+        match command {
+            SceneCommand::Shading(shading) => self.shading = shading,
+            SceneCommand::Opacity(x) => self.opacity = x,
+            SceneCommand::Cutaway(switch) => switch.apply(&mut self.cutaway),
+            SceneCommand::Camera(switch) => switch.apply(&mut self.aids.camera),
+            SceneCommand::Grid(switch) => switch.apply(&mut self.aids.grid),
+        }
+    }
+}
+
+/// How the progressive image is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ImageSettings {
+    /// Brightness in stops.
+    pub exposure: f32,
+    /// Screen points a film pixel, or as large as fits.
+    pub zoom: Option<f32>,
+}
+
+impl ImageSettings {
+    /// Follows a command.
+    pub fn apply(&mut self, command: ImageCommand) {
+        match command {
+            ImageCommand::Exposure(stops) => self.exposure = stops,
+            ImageCommand::Zoom(factor) => self.zoom = Some(factor),
+            ImageCommand::Fit => self.zoom = None,
+        }
+    }
+}
+
+/// What the window holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// Which panels are open, in the order of [`PanelName::ALL`].
+    pub open: [bool; PanelName::ALL.len()],
+    /// Light on dark.
+    pub dark: bool,
+    /// The sheet of keys is open.
+    pub help: bool,
+}
+
+impl Default for Layout {
+    fn default() -> Self {
+        Self { open: [true; PanelName::ALL.len()], dark: true, help: false }
+    }
+}
+
+impl Layout {
+    /// True when the panel is open.
+    pub fn is_open(&self, panel: PanelName) -> bool {
+        self.open[panel as usize]
+    }
+
+    /// Follows a command.
+    pub fn apply(&mut self, command: LayoutCommand) {
+        match command {
+            LayoutCommand::Panel(name, switch) => switch.apply(&mut self.open[name as usize]),
+            LayoutCommand::Theme(ThemeName::Dark) => self.dark = true,
+            LayoutCommand::Theme(ThemeName::Light) => self.dark = false,
+            LayoutCommand::Theme(ThemeName::Toggle) => self.dark = !self.dark,
+            LayoutCommand::Help(switch) => switch.apply(&mut self.help),
+        }
+    }
+}

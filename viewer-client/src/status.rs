@@ -1,0 +1,84 @@
+//! What is known of the daemon and of the way to it.
+
+use std::time::Instant;
+
+use common::{Statistics, Welcome};
+
+use crate::rates::{History, RateMeter};
+
+/// How the connection is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LinkState {
+    /// There is none.
+    Disconnected {
+        /// What went wrong last.
+        reason: String,
+        /// When the next attempt is due.
+        retry_at: Instant,
+    },
+    /// An attempt is under way.
+    Connecting,
+    /// The daemon has welcomed the viewer.
+    Connected,
+}
+
+/// What is known of the daemon and of the way to it.
+#[derive(Debug)]
+pub struct Status {
+    /// Where the daemon is, HOST:PORT.
+    pub address: String,
+    /// The daemon is part of this program.
+    pub embedded: bool,
+    /// How the connection is.
+    pub link: LinkState,
+    /// What the daemon said of itself.
+    pub welcome: Option<Welcome>,
+    /// The newest counts.
+    pub statistics: Option<Statistics>,
+    /// Mutations a second over the last minutes.
+    pub mutation_history: History,
+    /// Paths received.
+    pub path_rate: RateMeter,
+    /// Bytes of paths received.
+    pub byte_rate: RateMeter,
+    /// How often the connection was made anew.
+    pub reconnects: u32,
+}
+
+impl Status {
+    /// Before the first attempt to reach `address`.
+    pub fn new(address: String, embedded: bool) -> Self {
+        Self {
+            address,
+            embedded,
+            link: LinkState::Connecting,
+            welcome: None,
+            statistics: None,
+            mutation_history: History::default(),
+            path_rate: RateMeter::default(),
+            byte_rate: RateMeter::default(),
+            reconnects: 0,
+        }
+    }
+
+    /// True while data may come.
+    pub fn is_connected(&self) -> bool {
+        self.link == LinkState::Connected
+    }
+
+    /// Takes a daemon's welcome; it is another daemon, or the same one anew.
+    pub fn welcome(&mut self, welcome: Welcome) {
+        if self.welcome.is_some() {
+            self.reconnects += 1;
+        }
+        self.welcome = Some(welcome);
+        self.statistics = None;
+        self.mutation_history.clear();
+    }
+
+    /// Takes new counts.
+    pub fn statistics(&mut self, statistics: Statistics) {
+        self.mutation_history.push(statistics.mutations_per_second as f32);
+        self.statistics = Some(statistics);
+    }
+}

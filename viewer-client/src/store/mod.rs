@@ -1,0 +1,189 @@
+//! The paths that the viewer holds: whole records, in pages, within a byte budget.
+//!
+//! Paths are only ever appended; when the budget is spent, the oldest page goes. Nothing here knows
+//! of the window or the graphics card: [`Page::points`] yields plain vertices.
+
+mod page;
+#[cfg(test)]
+mod tests;
+mod tone;
+
+pub use page::{PAGE_POINTS, Page, StoredPath};
+pub use tone::Tone;
+
+use std::collections::VecDeque;
+
+use common::PathBatch;
+
+/// What came, and what did not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Batches received.
+    pub batches: u64,
+    /// Paths received.
+    pub paths: u64,
+    /// Bytes of the batches received.
+    pub bytes: u64,
+    /// Paths that came while the cloud was frozen, and were not kept.
+    pub skipped: u64,
+    /// Paths that were lost on the way, because somebody was too slow.
+    pub dropped: u64,
+    /// How often paths were lost.
+    pub gaps: u64,
+}
+
+/// All paths held.
+#[derive(Debug)]
+pub struct Store {
+    pages: VecDeque<Page>,
+    next_serial: u64,
+    next_ordinal: u32,
+    held: usize,
+    budget: usize,
+    counts: Counts,
+    tone: Tone,
+}
+
+impl Store {
+    /// An empty store that will use `budget` bytes at most, a page at least.
+    pub fn new(budget: usize) -> Self {
+        Self {
+            pages: VecDeque::new(),
+            next_serial: 0,
+            next_ordinal: 0,
+            held: 0,
+            budget,
+            counts: Counts::default(),
+            tone: Tone::default(),
+        }
+    }
+
+    /// Takes every path of a batch.
+    pub fn append(&mut self, batch: &PathBatch) {
+        self.note(batch);
+        let mut reader = batch.reader();
+        while let Some(path) = reader.next() {
+            let full = |page: &Page| !page.has_room(path.vertices.len());
+            if self.pages.back().is_none_or(full) {
+                self.open_page();
+            }
+            let Some(page) = self.pages.back_mut() else { return };
+            page.push(&path, self.next_ordinal);
+            self.tone.note(path.header.luminance);
+            self.next_ordinal = self.next_ordinal.wrapping_add(1);
+            self.held += 1;
+        }
+    }
+
+    /// Counts a batch that is not kept because the cloud is frozen.
+    pub fn skip(&mut self, batch: &PathBatch) {
+        self.note(batch);
+        self.counts.skipped += batch.len() as u64;
+    }
+
+    fn note(&mut self, batch: &PathBatch) {
+        self.counts.batches += 1;
+        self.counts.paths += batch.len() as u64;
+        self.counts.bytes += batch.byte_len() as u64;
+    }
+
+    /// Remembers that `paths` paths never came.
+    pub fn note_gap(&mut self, paths: u64) {
+        self.counts.gaps += 1;
+        self.counts.dropped += paths;
+    }
+
+    /// Forgets every path; the counts stay.
+    pub fn clear(&mut self) {
+        self.pages.clear();
+        self.held = 0;
+        self.tone = Tone::default();
+    }
+
+    /// Changes the budget, and drops what no longer fits.
+    pub fn set_budget(&mut self, bytes: usize) {
+        self.budget = bytes;
+        self.make_room(0);
+    }
+
+    fn open_page(&mut self) {
+        self.make_room(Page::BYTES);
+        self.pages.push_back(Page::new(self.next_serial));
+        self.next_serial += 1;
+    }
+
+    /// Drops the oldest pages until `more` bytes fit.
+    fn make_room(&mut self, more: usize) {
+        while self.byte_len() + more > self.budget {
+            let Some(page) = self.pages.pop_front() else { return };
+            self.held -= page.paths().len();
+        }
+    }
+
+    /// The pages, oldest first.
+    pub fn pages(&self) -> impl DoubleEndedIterator<Item = &Page> {
+        self.pages.iter()
+    }
+
+    /// Serial number of the oldest page held, or of the next one when there is none.
+    pub fn first_serial(&self) -> u64 {
+        self.pages.front().map_or(self.next_serial, Page::serial)
+    }
+
+    /// The page called `serial`.
+    pub fn page(&self, serial: u64) -> Option<&Page> {
+        let index = serial.checked_sub(self.first_serial())?;
+        self.pages.get(usize::try_from(index).ok()?)
+    }
+
+    /// Paths held.
+    pub fn len(&self) -> usize {
+        self.held
+    }
+
+    /// True without paths.
+    pub fn is_empty(&self) -> bool {
+        self.held == 0
+    }
+
+    /// Bytes in use, with the copy on the graphics card.
+    pub fn byte_len(&self) -> usize {
+        self.pages.len() * Page::BYTES
+    }
+
+    /// Bytes that may be used.
+    pub fn budget(&self) -> usize {
+        self.budget
+    }
+
+    /// What came so far.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// The range of radiances that paths carry.
+    pub fn tone(&self) -> Tone {
+        self.tone
+    }
+
+    /// Ordinal of the newest path.
+    pub fn newest_ordinal(&self) -> u32 {
+        self.next_ordinal.wrapping_sub(1)
+    }
+
+    /// The newest `paths` paths as (page, first point), newest page first: from the first point to
+    /// the end of the page.
+    pub fn newest(&self, paths: usize) -> Vec<(u64, usize)> {
+        let mut wanted = paths;
+        let mut ranges = Vec::new();
+        for page in self.pages.iter().rev() {
+            if wanted == 0 {
+                break;
+            }
+            let skipped = page.paths().len().saturating_sub(wanted);
+            wanted -= page.paths().len() - skipped;
+            ranges.push((page.serial(), page.paths().get(skipped).map_or(0, |p| p.first as usize)));
+        }
+        ranges
+    }
+}

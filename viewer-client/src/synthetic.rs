@@ -1,0 +1,107 @@
+//! A made-up daemon's messages, for tests.
+
+use std::collections::VecDeque;
+
+use common::{
+    BatchBuilder, BatchLimits, Camera, CameraPose, Event, FilmTile, MaterialInfo, PathBatch,
+    PathHeader, Rgb, Role, SceneFrame, SceneMesh, VertexKind, VertexRecord, Welcome,
+};
+use glam::DVec3;
+use proto::ReceivedScene;
+
+use crate::connection::Delivery;
+use crate::status::LinkState;
+
+/// A camera in front of the scene, which looks along -z.
+pub(crate) fn camera() -> Camera {
+    let pose = CameraPose {
+        origin: DVec3::new(0.0, 0.0, 1500.0),
+        target: DVec3::ZERO,
+        up: DVec3::Y,
+        vertical_fov: 40.0,
+    };
+    Camera::new(&pose, 40, 30).expect("a valid pose")
+}
+
+pub(crate) fn welcome() -> Welcome {
+    Welcome {
+        session: 7,
+        server_version: "0.1.0".to_owned(),
+        scene_name: "a room".to_owned(),
+        scene_hash: "abc".to_owned(),
+        frame: SceneFrame { centre: DVec3::ZERO, scale: 1.0 },
+        camera: camera(),
+        strategies: vec!["bidirectional".to_owned(), "lens".to_owned()],
+        failure_reasons: vec!["occluded".to_owned(), "off film".to_owned()],
+        chains: 128,
+        max_edges: 20,
+        role: Role::Observer,
+    }
+}
+
+/// A grey wall at z = -512 that fills the scene's bounds, which reach to z = 512.
+fn mesh() -> SceneMesh {
+    let material = |name: &str, emission| MaterialInfo {
+        name: name.to_owned(),
+        model: "lambert".to_owned(),
+        color: Rgb::grey(0.5),
+        emission,
+        transparent: false,
+    };
+    let positions = vec![
+        [-512.0, -512.0, -512.0],
+        [512.0, -512.0, -512.0],
+        [512.0, 512.0, -512.0],
+        [-512.0, 512.0, -512.0],
+        // A splinter in front, seen edge-on.
+        [512.0, 512.0, 512.0],
+    ];
+    SceneMesh {
+        normals: vec![[0.0, 0.0, 1.0]; positions.len()],
+        positions,
+        triangles: vec![[0, 1, 2], [0, 2, 3], [2, 4, 2]],
+        triangle_materials: vec![0, 0, 1],
+        primitives: vec![0, 1, 2],
+        materials: vec![material("wall", Rgb::BLACK), material("lamp", Rgb::WHITE)],
+        camera: Some(camera()),
+    }
+}
+
+/// Paths through the given points; each ends at the camera.
+pub(crate) fn batch(paths: &[&[[f32; 3]]]) -> PathBatch {
+    let mut builder = BatchBuilder::new(BatchLimits { bytes: usize::MAX });
+    for points in paths {
+        let lens = camera().origin.as_vec3().to_array();
+        let vertex = |position| VertexRecord {
+            position,
+            normal: [0, 0],
+            kind: VertexKind::Diffuse,
+            event: Event::Diffuse,
+            material: 0,
+            primitive: 0,
+        };
+        let vertices: Vec<_> = points.iter().copied().chain([lens]).map(vertex).collect();
+        let header = PathHeader { luminance: 1.0, rgb: [1.0; 3], ..PathHeader::default() };
+        assert!(builder.push(&header, &vertices, None).is_none(), "the batch has no limit");
+    }
+    builder.finish().expect("a batch with paths")
+}
+
+/// Everything that a viewer gets in its first second.
+pub(crate) fn delivery(paths: &[&[[f32; 3]]]) -> Delivery {
+    let rgb = [0.1, 0.3, 0.6].repeat(40 * 30);
+    let tile = FilmTile { sequence: 1, width: 40, height: 30, first_row: 0, steps: 2400, rgb };
+    let welcome = welcome();
+    Delivery {
+        state: Some(LinkState::Connected),
+        scene: Some(ReceivedScene {
+            hash: welcome.scene_hash.clone(),
+            frame: welcome.frame,
+            mesh: mesh(),
+        }),
+        welcome: Some(welcome),
+        batches: VecDeque::from([batch(paths)]),
+        film: [(0, tile)].into(),
+        ..Delivery::default()
+    }
+}

@@ -1,0 +1,103 @@
+//! Colours, spacing and type of the interface.
+
+use egui::{Color32, CornerRadius, FontId, Margin, Stroke, TextStyle, Theme, Visuals, vec2};
+use shaders::PALETTE_SIZE;
+
+/// The colour of things that can be acted upon.
+pub const ACCENT: Color32 = Color32::from_rgb(92, 156, 255);
+/// All is well.
+pub const GOOD: Color32 = Color32::from_rgb(88, 196, 120);
+/// Something is under way.
+pub const BUSY: Color32 = Color32::from_rgb(238, 178, 72);
+/// Something is wrong.
+pub const BAD: Color32 = Color32::from_rgb(236, 96, 88);
+/// The end of a path at the light; as in the shader.
+pub const LIGHT_END: Color32 = Color32::from_rgb(255, 204, 117);
+/// The end of a path at the camera; as in the shader.
+pub const CAMERA_END: Color32 = Color32::from_rgb(129, 194, 255);
+
+/// Colours that stay apart for most kinds of colour vision, on dark and on light ground.
+const STRATEGIES: [[u8; 3]; 8] = [
+    [86, 180, 233],
+    [230, 159, 0],
+    [0, 178, 128],
+    [240, 112, 80],
+    [204, 121, 190],
+    [213, 200, 66],
+    [122, 130, 240],
+    [160, 160, 160],
+];
+
+/// The colour of a strategy in tables and in the cloud.
+pub fn strategy_color(index: usize) -> Color32 {
+    let [r, g, b] = STRATEGIES[index.min(PALETTE_SIZE - 1) % STRATEGIES.len()];
+    Color32::from_rgb(r, g, b)
+}
+
+/// Sets up both themes.
+pub fn install(ctx: &egui::Context) {
+    ctx.set_visuals_of(Theme::Dark, dark());
+    ctx.set_visuals_of(Theme::Light, light());
+    ctx.all_styles_mut(|style| {
+        let spacing = &mut style.spacing;
+        spacing.item_spacing = vec2(8.0, 5.0);
+        spacing.button_padding = vec2(8.0, 3.0);
+        spacing.interact_size.y = 22.0;
+        spacing.slider_rail_height = 5.0;
+        spacing.menu_margin = Margin::same(6);
+        spacing.window_margin = Margin::same(14);
+        style.interaction.tooltip_delay = 0.35;
+        let proportional = [
+            (TextStyle::Heading, 15.0),
+            (TextStyle::Body, 13.0),
+            (TextStyle::Button, 13.0),
+            (TextStyle::Small, 11.0),
+        ];
+        for (text_style, size) in proportional {
+            style.text_styles.insert(text_style, FontId::proportional(size));
+        }
+        style.text_styles.insert(TextStyle::Monospace, FontId::monospace(12.0));
+    });
+}
+
+fn dark() -> Visuals {
+    let mut visuals = Visuals::dark();
+    visuals.panel_fill = Color32::from_rgb(27, 29, 33);
+    visuals.window_fill = Color32::from_rgb(32, 34, 39);
+    visuals.extreme_bg_color = Color32::from_rgb(17, 18, 21);
+    visuals.faint_bg_color = Color32::from_rgb(33, 35, 40);
+    let line = Color32::from_rgb(48, 51, 58);
+    let text = Color32::from_rgb(203, 207, 214);
+    visuals.widgets.inactive.bg_fill = Color32::from_rgb(52, 55, 62);
+    visuals.widgets.inactive.weak_bg_fill = Color32::from_rgb(44, 47, 53);
+    visuals.widgets.hovered.weak_bg_fill = Color32::from_rgb(57, 61, 69);
+    finish(visuals, line, text)
+}
+
+fn light() -> Visuals {
+    let mut visuals = Visuals::light();
+    visuals.panel_fill = Color32::from_rgb(242, 243, 245);
+    visuals.window_fill = Color32::from_rgb(250, 250, 251);
+    visuals.extreme_bg_color = Color32::from_rgb(255, 255, 255);
+    visuals.faint_bg_color = Color32::from_rgb(234, 236, 239);
+    let line = Color32::from_rgb(212, 215, 220);
+    let text = Color32::from_rgb(52, 56, 63);
+    visuals.widgets.inactive.bg_fill = Color32::from_rgb(208, 212, 218);
+    visuals.widgets.inactive.weak_bg_fill = Color32::from_rgb(226, 229, 233);
+    finish(visuals, line, text)
+}
+
+fn finish(mut visuals: Visuals, line: Color32, text: Color32) -> Visuals {
+    visuals.widgets.noninteractive.bg_stroke = Stroke::new(1.0, line);
+    visuals.widgets.noninteractive.fg_stroke = Stroke::new(1.0, text);
+    visuals.widgets.inactive.fg_stroke = Stroke::new(1.0, text);
+    visuals.window_stroke = Stroke::new(1.0, line);
+    visuals.selection.bg_fill = ACCENT.gamma_multiply(if visuals.dark_mode { 0.55 } else { 0.45 });
+    visuals.selection.stroke =
+        Stroke::new(1.0, if visuals.dark_mode { Color32::WHITE } else { Color32::BLACK });
+    visuals.slider_trailing_fill = true;
+    visuals.hyperlink_color = ACCENT;
+    visuals.window_corner_radius = CornerRadius::same(8);
+    visuals.menu_corner_radius = CornerRadius::same(6);
+    visuals
+}

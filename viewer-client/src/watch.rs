@@ -1,0 +1,225 @@
+//! `viewer-client watch`: what a daemon sends, as lines of text.
+
+use std::io::{self, Write as _};
+
+use anyhow::Context as _;
+use common::{Gap, PathBatch, Statistics, Welcome};
+use proto::TracerEvent;
+use serde_json::{Value, json};
+
+use crate::cli::WatchArgs;
+use crate::connection::Session;
+use crate::format;
+
+/// Prints what comes, until `--count` batches have come, the daemon ends or the reader goes away.
+pub fn run(args: &WatchArgs) -> anyhow::Result<()> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+    runtime.block_on(watch(args))
+}
+
+async fn watch(args: &WatchArgs) -> anyhow::Result<()> {
+    let mut session = Session::open(&args.address, "Lvis watch").await?;
+    let mut names = Names::default();
+    let mut batches = 0;
+    let mut out = io::stdout();
+    while args.count.is_none_or(|count| batches < count) {
+        let event = tokio::select! {
+            event = session.next() => event?,
+            stop = tokio::signal::ctrl_c() => {
+                stop.context("cannot wait for Ctrl-C")?;
+                break;
+            }
+        };
+        batches += u64::from(matches!(event, TracerEvent::Paths(_)));
+        let Some(line) = names.line(&event, args.json) else { continue };
+        if let Err(error) = writeln!(out, "{line}") {
+            // `watch | head` ends the reader; that is no mistake.
+            if error.kind() == io::ErrorKind::BrokenPipe {
+                break;
+            }
+            return Err(error).context("cannot write to the standard output");
+        }
+    }
+    session.leave().await;
+    Ok(())
+}
+
+/// Names announced in the welcome.
+#[derive(Debug, Default)]
+struct Names {
+    strategies: Vec<String>,
+}
+
+impl Names {
+    /// The line for an event; `None` for what is not worth one.
+    fn line(&mut self, event: &TracerEvent, json: bool) -> Option<String> {
+        match event {
+            TracerEvent::Welcome(welcome) => {
+                self.strategies.clone_from(&welcome.strategies);
+                Some(if json { welcome_json(welcome).to_string() } else { welcome_line(welcome) })
+            }
+            TracerEvent::Paths(batch) => {
+                let summary = Summary::of(batch);
+                Some(if json {
+                    self.batch_json(&summary).to_string()
+                } else {
+                    self.batch_line(&summary)
+                })
+            }
+            TracerEvent::Gap(gap) => {
+                Some(if json { gap_json(*gap).to_string() } else { gap_line(*gap) })
+            }
+            TracerEvent::Statistics(statistics) => Some(if json {
+                self.statistics_json(statistics).to_string()
+            } else {
+                self.statistics_line(statistics)
+            }),
+            TracerEvent::Film(_)
+            | TracerEvent::SnapshotEnd
+            | TracerEvent::Goodbye(_)
+            | TracerEvent::Unknown => None,
+        }
+    }
+
+    fn strategy(&self, index: u8) -> &str {
+        match self.strategies.get(usize::from(index)) {
+            Some(name) => name,
+            None if index == u8::MAX => "seed",
+            None => "unknown",
+        }
+    }
+
+    fn batch_line(&self, s: &Summary) -> String {
+        let strategies: Vec<String> =
+            s.strategies.iter().map(|(i, n)| format!("{} {n}", self.strategy(*i))).collect();
+        format!(
+            "batch {:>8}  {:>5} paths  {:>6} new vertices  {:>6} bytes  acceptance {:.3}  {}",
+            s.sequence,
+            s.paths,
+            s.new_vertices,
+            s.bytes,
+            s.mean_acceptance,
+            strategies.join(", ")
+        )
+    }
+
+    fn batch_json(&self, s: &Summary) -> Value {
+        let strategies: serde_json::Map<String, Value> =
+            s.strategies.iter().map(|(i, n)| (self.strategy(*i).to_owned(), json!(n))).collect();
+        json!({
+            "event": "batch",
+            "sequence": s.sequence,
+            "paths": s.paths,
+            "new_vertices": s.new_vertices,
+            "bytes": s.bytes,
+            "mean_acceptance": s.mean_acceptance,
+            "strategies": strategies,
+        })
+    }
+
+    fn statistics_line(&self, s: &Statistics) -> String {
+        let strategies: Vec<String> = s
+            .strategies
+            .iter()
+            .enumerate()
+            .map(|(i, t)| {
+                let accepted = format::percent(t.accepted as f64, t.proposed as f64);
+                format!("{} {accepted}", self.strategy(i as u8))
+            })
+            .collect();
+        format!(
+            "statistics  {} mutations  {}/s  b {:.5} +- {:.1e}  accepted: {}",
+            format::count(s.totals.steps as f64),
+            format::count(s.mutations_per_second),
+            s.normalization,
+            s.normalization_error,
+            strategies.join(", ")
+        )
+    }
+
+    fn statistics_json(&self, s: &Statistics) -> Value {
+        let strategies: Vec<Value> = s
+            .strategies
+            .iter()
+            .enumerate()
+            .map(|(i, t)| {
+                json!({
+                    "name": self.strategy(i as u8),
+                    "proposed": t.proposed,
+                    "generated": t.generated,
+                    "accepted": t.accepted,
+                })
+            })
+            .collect();
+        json!({
+            "event": "statistics",
+            "steps": s.totals.steps,
+            "mutations_per_second": s.mutations_per_second,
+            "normalization": s.normalization,
+            "normalization_error": s.normalization_error,
+            "viewers": s.viewers,
+            "strategies": strategies,
+        })
+    }
+}
+
+fn welcome_line(w: &Welcome) -> String {
+    format!(
+        "welcome  session {}  scene {}  {} x {} pixels  {} chains  paths of up to {} edges",
+        w.session, w.scene_name, w.camera.width, w.camera.height, w.chains, w.max_edges
+    )
+}
+
+fn welcome_json(w: &Welcome) -> Value {
+    json!({
+        "event": "welcome",
+        "session": w.session,
+        "scene": w.scene_name,
+        "scene_hash": w.scene_hash,
+        "width": w.camera.width,
+        "height": w.camera.height,
+        "chains": w.chains,
+        "max_edges": w.max_edges,
+        "strategies": w.strategies,
+        "failure_reasons": w.failure_reasons,
+    })
+}
+
+fn gap_line(gap: Gap) -> String {
+    format!("gap  {} batches  {} paths  {} bytes dropped", gap.batches, gap.paths, gap.bytes)
+}
+
+fn gap_json(gap: Gap) -> Value {
+    json!({ "event": "gap", "batches": gap.batches, "paths": gap.paths, "bytes": gap.bytes })
+}
+
+/// A batch in figures.
+#[derive(Debug, PartialEq)]
+struct Summary {
+    sequence: u64,
+    paths: usize,
+    new_vertices: usize,
+    bytes: usize,
+    mean_acceptance: f64,
+    /// Paths a strategy, by index.
+    strategies: Vec<(u8, usize)>,
+}
+
+impl Summary {
+    fn of(batch: &PathBatch) -> Self {
+        let columns = batch.paths();
+        let acceptance: f64 = columns.acceptance.iter().map(|a| f64::from(*a)).sum();
+        let mut counts = [0; 256];
+        for strategy in &columns.strategy {
+            counts[usize::from(*strategy)] += 1;
+        }
+        Self {
+            sequence: batch.sequence(),
+            paths: batch.len(),
+            new_vertices: batch.vertices().kind.len(),
+            bytes: batch.byte_len(),
+            mean_acceptance: acceptance / batch.len().max(1) as f64,
+            strategies: (0..=u8::MAX).zip(counts).filter(|(_, n)| *n > 0).collect(),
+        }
+    }
+}

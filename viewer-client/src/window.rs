@@ -1,0 +1,81 @@
+//! The viewer in a window of the desktop.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use anyhow::{Context as _, anyhow};
+use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+
+use crate::app::Viewer;
+use crate::connection::{Link, Waker};
+
+/// News is shown this often at most.
+const FRAME: Duration = Duration::from_millis(33);
+/// The window's first size in points.
+const SIZE: [f32; 2] = [1440.0, 860.0];
+/// The smallest size at which all panels are legible.
+const SMALLEST: [f32; 2] = [900.0, 560.0];
+
+/// How to reach a graphics card: with all that its driver allows.
+pub(crate) fn graphics_setup() -> WgpuSetupCreateNew {
+    WgpuSetupCreateNew {
+        device_descriptor: Arc::new(|adapter| wgpu::DeviceDescriptor {
+            label: Some("Lvis"),
+            // The defaults for OpenGL are those of WebGL 2, far below what drivers offer.
+            required_limits: adapter.limits(),
+            ..wgpu::DeviceDescriptor::default()
+        }),
+        ..WgpuSetupCreateNew::without_display_handle()
+    }
+}
+
+/// Opens the window, and returns when it is closed.
+pub fn run(viewer: Viewer, address: String) -> anyhow::Result<()> {
+    let options = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("Lvis")
+            .with_app_id("lvis")
+            .with_inner_size(SIZE)
+            .with_min_inner_size(SMALLEST),
+        wgpu_options: WgpuConfiguration {
+            wgpu_setup: WgpuSetup::CreateNew(graphics_setup()),
+            ..WgpuConfiguration::default()
+        },
+        ..eframe::NativeOptions::default()
+    };
+    let create = move |cc: &eframe::CreationContext<'_>| {
+        let gpu = cc.wgpu_render_state.as_ref().context("no graphics card was found")?;
+        Viewer::install(&cc.egui_ctx, gpu);
+        let mut viewer = viewer;
+        let ctx = cc.egui_ctx.clone();
+        let waker: Waker = Box::new(move || ctx.request_repaint_after(FRAME));
+        viewer.set_link(Link::start(address, waker)?);
+        let app: Box<dyn eframe::App> = Box::new(Window { viewer });
+        Ok(app)
+    };
+    eframe::run_native("Lvis", options, Box::new(create)).map_err(|error| {
+        anyhow!(
+            "cannot open a window: {error}; without a display, use --headless --screenshot-to \
+             OUT.png"
+        )
+    })
+}
+
+struct Window {
+    viewer: Viewer,
+}
+
+impl eframe::App for Window {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        self.viewer.receive();
+        if let Some(gpu) = frame.wgpu_render_state()
+            && self.viewer.upload(gpu)
+        {
+            ui.ctx().request_repaint();
+        }
+        self.viewer.ui(ui);
+        if self.viewer.is_closing() {
+            ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+}

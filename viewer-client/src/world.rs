@@ -1,0 +1,43 @@
+//! All that panels may read.
+
+use std::time::Instant;
+
+use crate::camera::ViewCamera;
+use crate::film::Film;
+use crate::model::Model;
+use crate::settings::Settings;
+use crate::status::Status;
+use crate::store::Store;
+
+/// A view of the whole viewer, for the length of a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct World<'a> {
+    /// What the user has chosen.
+    pub settings: &'a Settings,
+    /// The user's eye.
+    pub camera: &'a ViewCamera,
+    /// The daemon and the way to it.
+    pub status: &'a Status,
+    /// The paths.
+    pub store: &'a Store,
+    /// The progressive image.
+    pub film: &'a Film,
+    /// The scene, once it has come.
+    pub model: Option<&'a Model>,
+    /// When the frame began.
+    pub now: Instant,
+}
+
+impl World<'_> {
+    /// The name of a strategy; seeds have none.
+    pub fn strategy_name(&self, index: usize) -> &str {
+        let names = self.status.welcome.as_ref().map(|w| w.strategies.as_slice());
+        names.and_then(|names| names.get(index)).map_or("unknown strategy", String::as_str)
+    }
+
+    /// The name of a reason why a proposal fails.
+    pub fn failure_reason(&self, index: usize) -> &str {
+        let names = self.status.welcome.as_ref().map(|w| w.failure_reasons.as_slice());
+        names.and_then(|names| names.get(index)).map_or("unknown reason", String::as_str)
+    }
+}
