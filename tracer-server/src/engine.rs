@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use common::{ChainTotals, FailureCount, FilmFrame, Statistics, StrategyStatistics};
 use tracing::{info, warn};
 
-use crate::chain::{ChainStatistics, Ensemble, EnsembleSettings, StrategyCounts};
+use crate::chain::{Ensemble, EnsembleSettings, StrategyCounts};
 use crate::hub::Hub;
 use crate::path::Failure;
 use crate::scene::Scene;
@@ -75,7 +75,9 @@ fn run(scene: &Scene, settings: &EnsembleSettings, hub: &Hub, stop: &AtomicBool)
     while !stop.load(Ordering::Relaxed) {
         let window = hub.wants_paths().then_some(WINDOW);
         let batches = ensemble.advance(scene, steps, window);
-        batches.into_iter().for_each(|batch| hub.publish_paths(batch));
+        for batch in batches {
+            hub.publish_paths(batch);
+        }
         reporter.report(scene, &ensemble, hub);
     }
 }
@@ -135,7 +137,7 @@ fn film_frame(scene: &Scene, ensemble: &Ensemble) -> FilmFrame {
 }
 
 fn statistics(scene: &Scene, ensemble: &Ensemble) -> Statistics {
-    let counts: ChainStatistics = ensemble.statistics();
+    let counts = ensemble.statistics();
     let (normalization, normalization_error) = ensemble.normalization(scene);
     Statistics {
         totals: ChainTotals {

@@ -74,8 +74,7 @@ pub fn write(path: &Path, image: &Film, metadata: &[(String, String)]) -> Result
 fn write_exr(path: &Path, image: &Film, metadata: &[(String, String)]) -> Result<(), ImageError> {
     let (width, height) = (image.width() as usize, image.height() as usize);
     let channels = SpecificChannels::rgb(|Vec2(x, y): Vec2<usize>| {
-        let [r, g, b] = image.pixels()[y * width + x].to_f32();
-        (r, g, b)
+        <(f32, f32, f32)>::from(image.pixels()[y * width + x].to_f32())
     });
     let mut attributes = LayerAttributes::named("");
     attributes.software_name = Some(Text::from("Lvis"));

@@ -35,7 +35,7 @@ impl Integrator {
 }
 
 /// When an image is done.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Budget {
     /// After this many mutations, or samples, for each pixel.
     PerPixel(u64),

@@ -23,12 +23,24 @@ pub struct FilmSize {
 
 /// Loads what the user named, and logs what it asks for in vain.
 pub(super) fn scene(spec: &str, size: FilmSize) -> anyhow::Result<Scene> {
+    scene_with_depth(spec, size, None)
+}
+
+/// As [`scene`], with another limit on the length of paths than the scene says.
+pub(super) fn scene_with_depth(
+    spec: &str,
+    size: FilmSize,
+    max_edges: Option<usize>,
+) -> anyhow::Result<Scene> {
     let mut loaded = load(spec)?;
     for warning in &loaded.warnings {
         tracing::warn!("{warning}");
     }
     if let (Some(width), Some(height)) = (size.width, size.height) {
         (loaded.description.width, loaded.description.height) = (width, height);
+    }
+    if let Some(max_edges) = max_edges {
+        loaded.description.max_edges = max_edges;
     }
     let scene = Scene::new(&loaded.description)?;
     for warning in scene.warnings() {

@@ -7,6 +7,7 @@
 pub mod info;
 pub mod input;
 mod inventory;
+pub mod render;
 pub mod scenes;
 pub mod serve;
 
@@ -30,6 +31,7 @@ const BAD_INPUT: u8 = 2;
 Examples:
   tracer-server scenes
   tracer-server info door
+  tracer-server render door -o door.png
   tracer-server serve cornell --seed 7
 
 Exit codes: 0 done, 1 a check failed, 2 bad usage or input."
@@ -48,6 +50,7 @@ pub struct Cli {
 #[expect(missing_docs, reason = "the help of each stands on its arguments")]
 pub enum Command {
     Serve(serve::ServeArgs),
+    Render(render::RenderArgs),
     Scenes(scenes::ScenesArgs),
     Info(info::InfoArgs),
 }
@@ -56,6 +59,7 @@ impl Command {
     fn run(&self) -> anyhow::Result<ExitCode> {
         match self {
             Self::Serve(args) => serve::run(args),
+            Self::Render(args) => render::run(args),
             Self::Scenes(args) => scenes::run(args),
             Self::Info(args) => info::run(args),
         }

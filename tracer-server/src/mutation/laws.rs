@@ -39,6 +39,22 @@ enum Test {
     Proposals(usize),
 }
 
+impl Test {
+    fn repeats(self) -> usize {
+        match self {
+            Self::Steps(_) => 1,
+            Self::Proposals(proposals) => proposals,
+        }
+    }
+
+    fn steps(self) -> usize {
+        match self {
+            Self::Steps(steps) => steps,
+            Self::Proposals(_) => 1,
+        }
+    }
+}
+
 /// The functions of a path whose expectations are watched, in a fixed order.
 fn functionals(path: &Path, out: &mut Vec<f64>) {
     out.clear();
@@ -88,12 +104,17 @@ struct Watched {
     down: u64,
 }
 
-/// Room for one worker's samples.
+/// One worker's sampler and hand.
 struct Bench<'s> {
     scene: Tracer<'s>,
     sampler: BidirectionalSampler,
+    hand: Hand,
+}
+
+/// What a strategy works with.
+struct Hand {
+    rng: Rng,
     draft: Draft,
-    start: Path,
     x: Path,
     y: Path,
 }
@@ -102,51 +123,28 @@ impl<'s> Bench<'s> {
     fn new(scene: &'s Scene) -> Self {
         let scene = Tracer::new(scene);
         let sampler = BidirectionalSampler::new(&scene);
-        let (start, x, y) = (Path::default(), Path::default(), Path::default());
-        Self { scene, sampler, draft: Draft::default(), start, x, y }
+        let rng = Rng::new(0, Stream::Laboratory, 0);
+        let hand = Hand { rng, draft: Draft::default(), x: Path::default(), y: Path::default() };
+        Self { scene, sampler, hand }
     }
 
     fn chunk(&mut self, propose: &Propose<'_>, test: Test, number: u64) -> Vec<Watched> {
         let mut rng = Rng::new(20, Stream::Laboratory, number);
         let mut watched: Vec<Watched> = Vec::new();
         let (mut before, mut after, mut sums) = (Vec::new(), Vec::new(), Vec::new());
-        let Self { scene, sampler, draft, start, x, y } = self;
+        let Self { scene, sampler, hand } = self;
         for sample in 0..CHUNK {
             let film = DVec2::new(rng.uniform(), rng.uniform());
-            let mut walk_rng = Rng::new(21, Stream::Laboratory, number * CHUNK + sample);
-            sums.iter_mut().for_each(|sum| *sum = 0.0);
+            hand.rng = Rng::new(21, Stream::Laboratory, number * CHUNK + sample);
+            sums.fill(0.0);
             sampler.sample(scene, film, &mut rng, |path, weight| {
-                start.clone_from(path);
-                functionals(start, &mut before);
+                functionals(path, &mut before);
                 sums.resize(before.len(), 0.0);
                 watched.resize(before.len(), Watched::default());
-                let (repeats, steps) = match test {
-                    Test::Steps(steps) => (1, steps),
-                    Test::Proposals(proposals) => (proposals, 1),
-                };
-                for _ in 0..repeats {
-                    x.clone_from(start);
-                    let mut weight = weight / repeats as f64;
-                    for _ in 0..steps {
-                        let drawn = propose(scene, x, &mut walk_rng, draft, y);
-                        let a = drawn.map_or(0.0, |proposal| proposal.ratio.clamp(0.0, 1.0));
-                        match test {
-                            Test::Steps(_) if a > walk_rng.uniform() => std::mem::swap(x, y),
-                            Test::Steps(_) => {}
-                            Test::Proposals(_) => {
-                                weight *= a;
-                                if a > 0.0 {
-                                    std::mem::swap(x, y);
-                                }
-                            }
-                        }
-                    }
-                    functionals(x, &mut after);
-                    for (i, (a, b)) in after.iter().zip(&before).enumerate() {
-                        sums[i] += weight * (a - b);
-                        watched[i].up += u64::from(a > b);
-                        watched[i].down += u64::from(a < b);
-                    }
+                for _ in 0..test.repeats() {
+                    let weight = weight * hand.mutate(scene, path, propose, test);
+                    functionals(&hand.x, &mut after);
+                    tally(weight, (&before, &after), &mut sums, &mut watched);
                 }
             });
             for (watched, &sum) in watched.iter_mut().zip(&sums) {
@@ -154,6 +152,51 @@ impl<'s> Bench<'s> {
             }
         }
         watched
+    }
+}
+
+/// Adds the weighted change of every function to its sum, and counts which way it moved.
+fn tally(
+    weight: f64,
+    (before, after): (&[f64], &[f64]),
+    sums: &mut [f64],
+    watched: &mut [Watched],
+) {
+    for (i, (a, b)) in after.iter().zip(before).enumerate() {
+        sums[i] += weight * (a - b);
+        watched[i].up += u64::from(a > b);
+        watched[i].down += u64::from(a < b);
+    }
+}
+
+impl Hand {
+    /// Mutates `path` and leaves the result in `x`; returns the share of the path's weight that the
+    /// result stands for.
+    fn mutate(
+        &mut self,
+        scene: &Tracer<'_>,
+        path: &Path,
+        propose: &Propose<'_>,
+        test: Test,
+    ) -> f64 {
+        let Self { rng, draft, x, y } = self;
+        x.clone_from(path);
+        let mut share = 1.0 / test.repeats() as f64;
+        for _ in 0..test.steps() {
+            let drawn = propose(scene, x, rng, draft, y);
+            let a = drawn.map_or(0.0, |proposal| proposal.ratio.clamp(0.0, 1.0));
+            let moves = match test {
+                Test::Steps(_) => a > rng.uniform(),
+                Test::Proposals(_) => {
+                    share *= a;
+                    a > 0.0
+                }
+            };
+            if moves {
+                std::mem::swap(x, y);
+            }
+        }
+        share
     }
 }
 
@@ -203,7 +246,6 @@ fn assert_lawful(name: &str, scene: &Scene, propose: &Propose<'_>) {
         let suite = examine(name, scene, propose, test, samples);
         assert!(suite.len() >= 30, "{name}: only {} functions were exercised", suite.len());
         let verdict = suite.verdict();
-        println!("{name}, {test:?}: {verdict}, mean z^2 {:.2}", suite.mean_square());
         assert!(verdict.is_pass(), "{test:?}: {verdict}");
     }
 }
@@ -249,7 +291,6 @@ fn lens_leaves_the_target_alone() {
 fn assert_found(mutant: &Mutant<'_>, scene: &Scene, test: Test, samples: u64) {
     let suite = examine(mutant.name, scene, &mutant.propose, test, samples);
     let limit = z_limit(suite.len()).max(6.0);
-    println!("{}: {} functions, worst |z| {:.1}", mutant.name, suite.len(), suite.worst());
     assert!(
         suite.worst() > limit,
         "{} was not found: worst |z| = {:.2} of {} functions",
@@ -306,16 +347,13 @@ fn check_moves<M: Mutation>(scene: &Scene, mutation: &M) {
     let mut checked = 0;
     for _ in 0..3000 {
         let film = DVec2::new(rng.uniform(), rng.uniform());
-        let (start, sampler) = (&mut bench.start, &mut bench.sampler);
-        start.clone_from(&Path::default());
-        sampler.sample(&bench.scene, film, &mut rng, |path, _| start.clone_from(path));
-        if start.vertices().is_empty() || !mutation.applicable(start) {
+        let Bench { scene, sampler, hand: Hand { draft, x, y, .. } } = &mut bench;
+        x.clone_from(&Path::default());
+        sampler.sample(scene, film, &mut rng, |path, _| x.clone_from(path));
+        if x.vertices().is_empty() || !mutation.applicable(x) {
             continue;
         }
-        let (x, y) = (&bench.start, &mut bench.y);
-        let Ok(via) = mutation.propose(&bench.scene, x, &mut rng, &mut bench.draft, y) else {
-            continue;
-        };
+        let Ok(via) = mutation.propose(scene, x, &mut rng, draft, y) else { continue };
         assert!(mutation.applicable(y), "{}: the way back is closed", M::NAME);
         let back = mutation.reverse(via);
         let forth = mutation.transition(y, x, back) / mutation.transition(x, y, via);
@@ -331,7 +369,7 @@ fn check_moves<M: Mutation>(scene: &Scene, mutation: &M) {
         let (xv, yv) = (x.vertices(), y.vertices());
         assert_eq!(xv[..light], yv[..light], "{}: kept at the light end", M::NAME);
         assert_eq!(xv[xv.len() - eye..], yv[yv.len() - eye..], "{}: kept at the lens", M::NAME);
-        y.verify(&bench.scene);
+        y.verify(scene);
     }
     assert!(checked > 300, "{}: only {checked} proposals came about", M::NAME);
 }

@@ -70,7 +70,7 @@ impl LensPerturbation {
             } else if d == 0 {
                 end_on_light(scene, &mut at)?;
             } else {
-                open_for_connection(scene, &mut at).map_err(|_| Failure::KindChanged)?;
+                open_for_connection(scene, &mut at).or(Err(Failure::KindChanged))?;
             }
             draft.eye.push(at);
         }

@@ -112,7 +112,7 @@ pub(super) fn of_lens<'a>(right: LensPerturbation) -> Vec<Mutant<'a>> {
     /// made superfluous.
     fn film_per_area(y: &Path, d: usize) -> f64 {
         let (k, v) = (y.edge_count(), y.vertices());
-        let distance_squared: f64 =
+        let distance_squared =
             (d..k).map(|j| (v[j + 1].position - v[j].position).length()).sum::<f64>().powi(2);
         let cosine = v[k].normal.dot(-y.edges()[k - 1].direction);
         v[d].normal.dot(y.edges()[d].direction).abs() / (distance_squared * cosine.powi(3))

@@ -118,13 +118,8 @@ impl Path {
     /// The film point: drawn by the walk from the lens, or found by projection.
     fn find_film_point(&mut self, scene: &Tracer<'_>, drawn: Option<DVec2>) -> Result<(), Failure> {
         let camera = scene.camera();
-        let film = match drawn {
-            Some(film) => film,
-            None => {
-                let from_lens = self.edges.last().map(|edge| -edge.direction);
-                from_lens.and_then(|d| camera.project(d)).ok_or(Failure::OffFilm)?
-            }
-        };
+        let projected = || camera.project(-self.edges.last()?.direction);
+        let film = drawn.or_else(projected).ok_or(Failure::OffFilm)?;
         self.film = film;
         self.pixel = camera.pixel(film) as u32;
         Ok(())

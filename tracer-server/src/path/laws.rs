@@ -47,7 +47,9 @@ fn bidirectional_paths_can_be_rebuilt() {
     let scene = Tracer::new(&scene);
     let paths = sample_paths(&scene, 300);
     assert!(paths.len() > 1000, "only {} paths", paths.len());
-    paths.iter().for_each(|path| path.verify(&scene));
+    for path in &paths {
+        path.verify(&scene);
+    }
 }
 
 /// Luminance of `f` with respect to area measure, factor by factor from the vertices.

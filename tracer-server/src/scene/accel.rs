@@ -209,7 +209,8 @@ impl Accel {
             };
             let first = if own_a == Some(index) { ON_SPHERE } else { 0.0 };
             let last = if own_b == Some(index) { length - ON_SPHERE } else { length };
-            blocked |= [near, far].into_iter().any(|t| t > first && t < last);
+            let between = |t: f64| t > first && t < last;
+            blocked |= between(near) || between(far);
         });
         blocked
     }

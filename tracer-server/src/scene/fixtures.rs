@@ -82,8 +82,8 @@ impl Fixture {
     }
 
     /// The six inner walls of the cube [-1, 1]^3, all of one material.
-    pub(crate) fn room(self, walls: [BsdfDescription; 6], emission: Rgb) -> Self {
-        let [left, right, floor, ceiling, back, front] = walls;
+    pub(crate) fn room(self, walls: &[BsdfDescription; 6], emission: Rgb) -> Self {
+        let &[left, right, floor, ceiling, back, front] = walls;
         self.quad(left, emission, [-1., -1., -1.], [0., 2., 0.], [0., 0., 2.])
             .quad(right, emission, [1., -1., -1.], [0., 0., 2.], [0., 2., 0.])
             .quad(floor, emission, [-1., -1., -1.], [0., 0., 2.], [2., 0., 0.])
@@ -130,7 +130,7 @@ const BLACK: BsdfDescription = lambert(0.0, 0.0, 0.0);
 /// A room with coloured walls and a lamp under its ceiling.
 pub(crate) fn diffuse_room() -> Fixture {
     Fixture::new(DVec3::new(0.1, 0.0, 0.95), DVec3::new(0.0, -0.1, -1.0), 70.0)
-        .room([RED, GREEN, WHITE, WHITE, WHITE, WHITE], Rgb::BLACK)
+        .room(&[RED, GREEN, WHITE, WHITE, WHITE, WHITE], Rgb::BLACK)
         .quad(BLACK, Rgb::new(12.0, 9.0, 6.0), [-0.3, 0.9, -0.3], [0.6, 0., 0.], [0., 0., 0.5])
 }
 

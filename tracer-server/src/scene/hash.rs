@@ -54,12 +54,16 @@ impl Digest {
     }
 
     fn color(&mut self, c: Rgb) {
-        [c.r, c.g, c.b].into_iter().for_each(|x| self.number(x));
+        for x in <[f64; 3]>::from(c) {
+            self.number(x);
+        }
     }
 
     fn camera(&mut self, description: &SceneDescription) {
         let camera = &description.camera;
-        [camera.origin, camera.target, camera.up].into_iter().for_each(|p| self.point(p));
+        for p in [camera.origin, camera.target, camera.up] {
+            self.point(p);
+        }
         self.number(camera.vertical_fov);
         self.count(description.width as usize);
         self.count(description.height as usize);

@@ -27,8 +27,9 @@ pub(crate) struct Ball {
     pub(crate) offset: f64,
 }
 
-/// Distance that a ray's origin moves along the normal: sixteen units in the last place of `f32`
-/// at the shape's farthest corner. It bounds the rounding of the point, of the traversal's copy of
+/// Distance that a ray's origin moves along the normal.
+///
+/// Sixteen units in the last place of `f32` at the shape's farthest corner: this bounds the rounding of the point, of the traversal's copy of
 /// it and of the coplanar neighbour's plane.
 fn ray_offset(normal: DVec3, farthest: DVec3) -> f64 {
     const ULPS: f64 = 16.0 * (f32::EPSILON as f64 / 2.0);
@@ -71,7 +72,7 @@ impl Triangle {
     }
 
     pub(crate) fn to_single(self) -> [Vec3A; 3] {
-        self.corners().map(|corner| corner.as_vec3a())
+        self.corners().map(|c: DVec3| c.as_vec3a())
     }
 }
 

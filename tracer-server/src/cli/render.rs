@@ -1,0 +1,375 @@
+//! `tracer-server render`: one image, and the story of how it was made.
+
+use std::io::{self, IsTerminal as _, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+use anyhow::{Context as _, ensure};
+use clap::builder::RangedU64ValueParser;
+use clap::{Args, ValueEnum};
+use comfy_table::Table;
+use comfy_table::presets::UTF8_FULL_CONDENSED;
+use common::{mean_ratio, relative_mse};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::input::{self, FilmSize};
+use crate::chain::EnsembleSettings;
+use crate::image_file;
+use crate::render::{Budget, Integrator, Progress, RenderSettings, Rendering, Report, render};
+use crate::scene::MAX_EDGES;
+
+/// Mutations, or samples, for each pixel unless the user says otherwise.
+const DEFAULT_PER_PIXEL: u64 = 256;
+
+/// Renders one image, with a table of what the chains did.
+///
+/// The same scene, seed and options give the same image, whatever the number of threads.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  tracer-server render door -o door.png
+  tracer-server render cornell -o cornell.exr --integrator bdpt --mutations-per-pixel 64
+  tracer-server render caustic -o caustic.exr --time 30 --reference reference.exr
+  tracer-server render scenes/room.toml -o room.exr --width 640 --height 480 --stats-json room.json")]
+pub struct RenderArgs {
+    /// A built-in scene, a .toml or .obj file, or a directory that holds one.
+    pub scene: String,
+    /// Where to put the image: .exr keeps linear radiance, .png is exposed to be looked at.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// How to render.
+    #[arg(long, value_enum, default_value = "mlt")]
+    pub integrator: IntegratorName,
+    /// Mutations, or samples, for each pixel [default: 256].
+    #[arg(long, value_name = "N", conflicts_with = "time")]
+    #[arg(value_parser = RangedU64ValueParser::<u64>::new().range(1..=1 << 32))]
+    pub mutations_per_pixel: Option<u64>,
+    /// Stop after the first round that ends later than this, seeding included.
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub time: Option<Duration>,
+    /// Number of the run: the same seed gives the same image.
+    #[arg(long, default_value_t = EnsembleSettings::default().seed)]
+    pub seed: u64,
+    /// Number of Markov chains.
+    #[arg(long, value_name = "N", default_value_t = EnsembleSettings::default().chains)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    pub chains: u32,
+    /// Worker threads; as many as there are cores without.
+    #[arg(long, value_name = "N")]
+    #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
+    pub threads: Option<usize>,
+    /// The film.
+    #[command(flatten)]
+    pub film: FilmSize,
+    /// Longest path in edges from light to camera (1: a lamp seen directly); the scene's own
+    /// without.
+    #[arg(long, value_name = "EDGES")]
+    #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..=MAX_EDGES as u64))]
+    pub max_depth: Option<usize>,
+    /// An image to measure the error against.
+    #[arg(long, value_name = "REF.exr")]
+    pub reference: Option<PathBuf>,
+    /// Where to put the report as JSON.
+    #[arg(long, value_name = "FILE")]
+    pub stats_json: Option<PathBuf>,
+}
+
+/// The integrators by the names they have on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum IntegratorName {
+    /// Metropolis light transport.
+    Mlt,
+    /// Bidirectional path tracing.
+    Bdpt,
+    /// Path tracing with light sampling.
+    Path,
+}
+
+impl From<IntegratorName> for Integrator {
+    fn from(name: IntegratorName) -> Self {
+        match name {
+            IntegratorName::Mlt => Self::Mlt,
+            IntegratorName::Bdpt => Self::Bdpt,
+            IntegratorName::Path => Self::Path,
+        }
+    }
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let time = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    time.filter(|time| !time.is_zero()).ok_or_else(|| "give a positive number".to_owned())
+}
+
+/// Renders, writes the image and prints the report.
+pub fn run(args: &RenderArgs) -> anyhow::Result<ExitCode> {
+    // What would only fail after the work is looked at before it.
+    image_file::Format::of(&args.output)?;
+    for file in [Some(&args.output), args.stats_json.as_ref()].into_iter().flatten() {
+        check_folder(file)?;
+    }
+    let scene = input::scene_with_depth(&args.scene, args.film, args.max_depth)?;
+    let reference = args.reference.as_deref().map(image_file::read_exr).transpose()?;
+    if let Some(reference) = &reference {
+        let camera = scene.camera();
+        ensure!(
+            (reference.width(), reference.height()) == (camera.width, camera.height),
+            "the reference has {} x {} pixels and the film {} x {}; choose the film with --width \
+             and --height",
+            reference.width(),
+            reference.height(),
+            camera.width,
+            camera.height,
+        );
+    }
+    let defaults = EnsembleSettings::default();
+    let settings = RenderSettings {
+        integrator: args.integrator.into(),
+        budget: match (args.time, args.mutations_per_pixel) {
+            (Some(time), _) => Budget::Time(time),
+            (None, mutations) => Budget::PerPixel(mutations.unwrap_or(DEFAULT_PER_PIXEL)),
+        },
+        ensemble: EnsembleSettings {
+            seed: args.seed,
+            chains: args.chains,
+            threads: args.threads.unwrap_or(defaults.threads),
+            ..defaults
+        },
+    };
+    let mut meter = Meter::new(scene.name(), settings.integrator);
+    let Rendering { image, mut report } = render(&scene, &settings, |at| meter.show(at));
+    meter.finish();
+    if let Some(reference) = &reference {
+        report.relative_mse = Some(relative_mse(image.pixels(), reference.pixels()));
+        report.mean_ratio = Some(mean_ratio(image.pixels(), reference.pixels()));
+    }
+    image_file::write(&args.output, &image, &metadata(&report))?;
+    if let Some(file) = &args.stats_json {
+        std::fs::write(file, serde_json::to_string_pretty(&report)?)
+            .with_context(|| format!("`{}` could not be written", file.display()))?;
+    }
+    print(&mut io::stdout().lock(), &report, &args.output)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn check_folder(file: &Path) -> anyhow::Result<()> {
+    let folder = match file.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    ensure!(folder.is_dir(), "`{}`: there is no folder `{}`", file.display(), folder.display());
+    Ok(())
+}
+
+/// What an EXR file's header tells of the image.
+fn metadata(report: &Report) -> Vec<(String, String)> {
+    let entries: [(&str, &dyn std::fmt::Display); 12] = [
+        ("version", &env!("CARGO_PKG_VERSION")),
+        ("scene", &report.scene),
+        ("scene_hash", &report.scene_hash),
+        ("integrator", &report.integrator),
+        ("seed", &report.seed),
+        ("max_edges", &report.max_edges),
+        ("chains", &report.chains),
+        ("mutations", &report.mutations),
+        ("normalization", &report.normalization),
+        ("normalization_error", &report.normalization_error),
+        ("wall_seconds", &report.wall_seconds),
+        ("cpu_seconds", &report.cpu_seconds),
+    ];
+    entries.map(|(key, value)| (format!("lvis.{key}"), value.to_string())).into()
+}
+
+/// A progress bar on a terminal, a line for each tenth elsewhere.
+struct Meter {
+    bar: Option<ProgressBar>,
+    told: usize,
+}
+
+impl Meter {
+    const STEPS: u64 = 1000;
+
+    fn new(scene: &str, integrator: Integrator) -> Self {
+        let bar = io::stderr().is_terminal().then(|| {
+            let bar = ProgressBar::new(Self::STEPS);
+            let style = "{prefix} {wide_bar} {percent:>3} %  {elapsed} passed, {eta} left  {msg}";
+            if let Ok(style) = ProgressStyle::with_template(style) {
+                bar.set_style(style);
+            }
+            bar.set_prefix(format!("{scene}, {}", integrator.name()));
+            bar
+        });
+        Self { bar, told: 0 }
+    }
+
+    fn show(&mut self, progress: Progress) {
+        match (progress, &self.bar) {
+            (Progress::Seeding(samples), Some(bar)) => {
+                bar.set_message(format!("seeding: {samples} samples"));
+            }
+            (Progress::Rendering(share), Some(bar)) => {
+                bar.set_message("");
+                bar.set_position((share * Self::STEPS as f64) as u64);
+            }
+            (Progress::Seeding(samples), None) => tracing::info!("seeding: {samples} samples"),
+            (Progress::Rendering(share), None) => {
+                let tenth = (share * 10.0) as usize;
+                if tenth > self.told {
+                    self.told = tenth;
+                    tracing::info!("rendered {} %", 10 * tenth);
+                }
+            }
+        }
+    }
+
+    fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn print(out: &mut impl Write, report: &Report, file: &Path) -> io::Result<()> {
+    if !report.strategies.is_empty() {
+        writeln!(out, "{}", strategy_table(report).trim_fmt())?;
+    }
+    let work = if report.chains > 0 { "mutations" } else { "samples" };
+    let per = |n: u64| n as f64 / report.mutations.max(1) as f64;
+    writeln!(
+        out,
+        "{:>12} {work}, {} a second on {} threads; {:.2} s of wall clock, {:.2} s of CPU",
+        report.mutations,
+        short(report.rate),
+        report.threads,
+        report.wall_seconds,
+        report.cpu_seconds,
+    )?;
+    writeln!(
+        out,
+        "{:>12} rays and {} shadow rays: {:.2} and {:.2} for each of the {work}",
+        report.rays,
+        report.shadow_rays,
+        per(report.rays),
+        per(report.shadow_rays),
+    )?;
+    if report.chains > 0 {
+        writeln!(
+            out,
+            "mean luminance b = {:.6} +- {:.6} ({:.2} %) from {} samples in {:.2} s; {} chains, \
+             longest stay at one path {} steps; {} proposals were no number",
+            report.normalization,
+            report.normalization_error,
+            100.0 * report.normalization_error / report.normalization.max(f64::MIN_POSITIVE),
+            report.bootstrap_samples,
+            report.seeding_seconds,
+            report.chains,
+            report.longest_dwell,
+            report.not_finite,
+        )?;
+    }
+    let [r, g, b] = report.mean;
+    writeln!(out, "mean of the image: {r:.6} {g:.6} {b:.6}")?;
+    if let (Some(error), Some(ratio)) = (report.relative_mse, report.mean_ratio) {
+        writeln!(
+            out,
+            "against the reference: relMSE {error:.3e}, relMSE x CPU seconds {:.3e}, mean ratio \
+             {ratio:.5}",
+            error * report.cpu_seconds,
+        )?;
+    }
+    writeln!(out, "written to {}", file.display())
+}
+
+fn strategy_table(report: &Report) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED).set_header([
+        "strategy",
+        "proposed",
+        "generated",
+        "accepted",
+        "of generated",
+        "why the others failed",
+    ]);
+    let percent =
+        |part: u64, whole: u64| format!("{:.1} %", 100.0 * part as f64 / whole.max(1) as f64);
+    for strategy in &report.strategies {
+        let failures: Vec<String> = strategy
+            .failures
+            .iter()
+            .map(|(reason, count)| format!("{reason} {}", percent(*count, strategy.proposed)))
+            .collect();
+        table.add_row([
+            strategy.name.clone(),
+            strategy.proposed.to_string(),
+            percent(strategy.generated, strategy.proposed),
+            percent(strategy.accepted, strategy.proposed),
+            percent(strategy.accepted, strategy.generated),
+            failures.join(", "),
+        ]);
+    }
+    table
+}
+
+/// A rate with a unit prefix.
+fn short(rate: f64) -> String {
+    match rate {
+        r if r >= 1e6 => format!("{:.2} M", r / 1e6),
+        r if r >= 1e3 => format!("{:.1} k", r / 1e3),
+        r => format!("{r:.1}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser as _;
+
+    use super::*;
+    use crate::cli::{Cli, Command};
+
+    fn parse(line: &str) -> Result<RenderArgs, String> {
+        let cli = Cli::try_parse_from(line.split(' ')).map_err(|error| error.to_string())?;
+        match cli.command {
+            Command::Render(args) => Ok(args),
+            _ => Err("another subcommand".to_owned()),
+        }
+    }
+
+    #[test]
+    fn budgets_exclude_each_other() {
+        let line = "tracer-server render cornell -o a.exr --time 3 --mutations-per-pixel 4";
+        assert!(parse(line).expect_err("both budgets").contains("cannot be used with"));
+        for bad in ["0", "-1", "nan", "inf", "soon"] {
+            let line = format!("tracer-server render cornell -o a.exr --time={bad}");
+            assert!(parse(&line).is_err(), "--time {bad} must be refused");
+        }
+        let args = parse("tracer-server render cornell -o a.exr --time 0.5").expect("a budget");
+        assert_eq!(args.time, Some(Duration::from_millis(500)));
+    }
+
+    #[test]
+    fn a_render_leaves_an_image_and_a_report() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let image = folder.path().join("a.exr");
+        let json = folder.path().join("a.json");
+        for integrator in ["mlt", "bdpt", "path"] {
+            let line = format!(
+                "tracer-server render cornell --width 16 --height 16 --mutations-per-pixel 4 \
+                 --chains 16 --integrator {integrator} -o {} --stats-json {}",
+                image.display(),
+                json.display(),
+            );
+            let line = line.split_whitespace().collect::<Vec<_>>().join(" ");
+            run(&parse(&line).expect("valid arguments")).expect("a render");
+            let film = image_file::read_exr(&image).expect("an image");
+            assert!(film.mean().luminance() > 0.0, "{integrator}: the image is black");
+            let text = std::fs::read_to_string(&json).expect("a report");
+            let report: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+            assert_eq!(report["integrator"], integrator);
+            assert!(report["mutations"].as_u64() >= Some(1024), "{integrator}: {text}");
+        }
+        let line =
+            format!("tracer-server render cornell -o {}/no/such/a.png", folder.path().display());
+        let error = run(&parse(&line).expect("valid arguments")).expect_err("no folder");
+        assert!(error.to_string().contains("there is no folder"), "{error}");
+    }
+}
