@@ -14,7 +14,7 @@ use tracer_server::scene::Scene;
 use tracer_server::scene::load::load;
 
 /// Nothing here takes that long; what does hangs.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 
 fn start() -> Daemon {
     let mut description = load("cornell").expect("a built-in scene").description;

@@ -11,7 +11,7 @@ use proto::v1::tracer_client::TracerClient;
 use proto::{Hello, ProtocolVersion, TracerEvent, ViewerEvent, v1};
 
 /// Nothing here takes that long; what does hangs.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 
 /// A running `serve`, killed when the test is over.
 struct Served {
