@@ -1,207 +1,24 @@
 //! A real daemon service on a free port, watched by real viewers; only the paths are made up.
 
-use std::future::Future;
+mod fixture;
+
 use std::io::{Read as _, Write as _};
 use std::net::TcpStream;
 use std::sync::Arc;
 use std::time::Duration;
 
-use common::{
-    BatchBuilder, Camera, CameraPose, ChainId, Event, FilmFrame, Gap, MaterialInfo, PathBatch,
-    PathHeader, PathId, Rgb, Role, SceneFrame, SceneMesh, Statistics, VertexKind, VertexRecord,
-    Welcome,
-};
-use glam::DVec3;
+use common::{FilmFrame, Gap, Rgb, Statistics, Welcome};
 use proto::v1::tracer_client::TracerClient;
 use proto::v1::viewer_message::Kind;
-use proto::{Hello, ProtocolVersion, SceneAssembler, TracerEvent, ViewerEvent, v1};
+use proto::{ProtocolVersion, SceneAssembler, TracerEvent, ViewerEvent, v1};
 use tokio::sync::mpsc;
 use tokio_stream::wrappers::ReceiverStream;
 use tonic::transport::{Channel, Endpoint};
-use tonic::{Code, Status, Streaming};
+use tonic::{Code, Status};
 use tracer_server::hub::HubLimits;
-use tracer_server::service::{Server, SessionInfo};
+use tracer_server::service::Server;
 
-/// Nothing here takes that long; what does hangs.
-const PATIENCE: Duration = Duration::from_secs(30);
-
-/// Waits for what must happen.
-async fn soon<F: Future>(what: &str, future: F) -> F::Output {
-    tokio::time::timeout(PATIENCE, future)
-        .await
-        .unwrap_or_else(|_| panic!("waits for ever: {what}"))
-}
-
-fn session_info() -> SessionInfo {
-    let pose = CameraPose {
-        origin: DVec3::new(0.0, 0.0, 5.0),
-        target: DVec3::ZERO,
-        up: DVec3::Y,
-        vertical_fov: 40.0,
-    };
-    let camera = Camera::new(&pose, 64, 48).expect("a valid pose");
-    let welcome = Welcome {
-        session: 0,
-        server_version: "test".to_owned(),
-        scene_name: "strip".to_owned(),
-        scene_hash: "cafe".to_owned(),
-        frame: SceneFrame { centre: DVec3::ZERO, scale: 2.0 },
-        camera,
-        strategies: vec!["lens".to_owned()],
-        failure_reasons: vec!["occluded".to_owned()],
-        chains: 2,
-        max_edges: 8,
-        role: Role::Observer,
-    };
-    SessionInfo { welcome, mesh: strip(60_000, camera) }
-}
-
-/// A strip of triangles.
-fn strip(triangles: u32, camera: Camera) -> SceneMesh {
-    let count = triangles as usize;
-    let white = MaterialInfo {
-        name: "white".to_owned(),
-        model: "lambert".to_owned(),
-        color: Rgb::WHITE,
-        emission: Rgb::BLACK,
-        transparent: false,
-    };
-    SceneMesh {
-        positions: (0..count + 2).map(|i| [i as f32, (i % 2) as f32, 0.0]).collect(),
-        normals: vec![[0.0, 0.0, 1.0]; count + 2],
-        triangles: (0..triangles).map(|i| [i, i + 1, i + 2]).collect(),
-        triangle_materials: vec![0; count],
-        primitives: (0..triangles).collect(),
-        materials: vec![white],
-        camera: Some(camera),
-    }
-}
-
-fn start(limits: HubLimits) -> Server {
-    let any_port = "127.0.0.1:0".parse().expect("an address");
-    Server::start(any_port, session_info(), limits).expect("a free port")
-}
-
-/// Stops a server off the runtime, which goes on reading meanwhile.
-async fn stop(server: Server) {
-    let stopping = tokio::task::spawn_blocking(move || server.stop());
-    soon("the server to stop", stopping).await.expect("stopping does not panic");
-}
-
-async fn connect(server: &Server) -> Result<TracerClient<Channel>, Status> {
-    let endpoint = Endpoint::from_shared(format!("http://{}", server.address())).expect("an URI");
-    let channel = soon("a connection", endpoint.connect()).await;
-    channel.map(TracerClient::new).map_err(|error| Status::unavailable(error.to_string()))
-}
-
-fn hello() -> v1::Hello {
-    v1::Hello::from(Hello {
-        version: ProtocolVersion::CURRENT,
-        viewer_name: "test".to_owned(),
-        wanted_role: Role::Observer,
-        data_budget: 1 << 30,
-    })
-}
-
-/// Sends `messages`, then says no more but keeps listening.
-async fn watch(
-    server: &Server,
-    messages: Vec<v1::ViewerMessage>,
-) -> Result<Streaming<v1::TracerMessage>, Status> {
-    let mut client = connect(server).await?;
-    let answer = soon("an answer", client.watch(tokio_stream::iter(messages))).await?;
-    Ok(answer.into_inner())
-}
-
-/// A viewer that is welcome.
-struct Viewer {
-    welcome: Welcome,
-    stream: Streaming<v1::TracerMessage>,
-}
-
-impl Viewer {
-    async fn join(server: &Server) -> Result<Self, Status> {
-        let message = v1::ViewerMessage { kind: Some(Kind::Hello(hello())) };
-        let mut stream = watch(server, vec![message]).await?;
-        let first = soon("a welcome", stream.message()).await?.expect("the stream is open");
-        match TracerEvent::try_from(first).expect("well-formed") {
-            TracerEvent::Welcome(welcome) => Ok(Self { welcome, stream }),
-            other => panic!("not a welcome: {other:?}"),
-        }
-    }
-
-    /// The next event; `None` when the stream has ended well.
-    async fn next(&mut self) -> Option<TracerEvent> {
-        let message = soon("a message", self.stream.message()).await.expect("no error");
-        message.map(|message| TracerEvent::try_from(message).expect("well-formed"))
-    }
-
-    /// The next event that is no statistics.
-    async fn next_data(&mut self) -> Option<TracerEvent> {
-        loop {
-            match self.next().await {
-                Some(TracerEvent::Statistics(_)) => {}
-                event => return event,
-            }
-        }
-    }
-
-    /// Everything up to the end of the snapshot.
-    async fn snapshot(&mut self) -> Vec<TracerEvent> {
-        let mut events = Vec::new();
-        loop {
-            match self.next().await.expect("the snapshot has an end") {
-                TracerEvent::SnapshotEnd => return events,
-                event => events.push(event),
-            }
-        }
-    }
-}
-
-/// A path of `vertices`, told apart by `tag`.
-fn path(tag: u32, vertices: u32) -> Vec<VertexRecord> {
-    (0..vertices)
-        .map(|i| VertexRecord {
-            position: [tag as f32, i as f32, 0.5],
-            normal: [1, -1],
-            kind: VertexKind::Diffuse,
-            event: Event::Diffuse,
-            material: 0,
-            primitive: tag,
-        })
-        .collect()
-}
-
-/// A batch of about `bytes` whose paths are keyframes and diffs of two chains, and those paths.
-fn batch(bytes: usize) -> (PathBatch, Vec<Vec<VertexRecord>>) {
-    let mut builder = BatchBuilder::default();
-    let mut last = [path(0, 4), path(1, 4)];
-    let mut paths = Vec::new();
-    for step in 0..(bytes / 100) as u32 {
-        let chain = step % 2;
-        let current = &mut last[chain as usize];
-        let known = step > 1;
-        if known {
-            // Replaces one inner vertex: one kept at the light, two at the lens.
-            current[1] = path(step, 1)[0];
-        }
-        let id = PathId { chain: ChainId(chain), epoch: 0, step: step.into() };
-        let header = PathHeader { id, weight: 1.0, ..PathHeader::default() };
-        let completed = builder.push(&header, current, known.then_some((1, 2)));
-        assert!(completed.is_none(), "one batch holds them all");
-        paths.push(current.clone());
-    }
-    (builder.finish().expect("there are paths"), paths)
-}
-
-fn rebuild(batch: &PathBatch) -> Vec<Vec<VertexRecord>> {
-    let mut reader = batch.reader();
-    let mut paths = Vec::new();
-    while let Some(path) = reader.next() {
-        paths.push(path.vertices.to_vec());
-    }
-    paths
-}
+use fixture::{Viewer, batch, connect, hello, rebuild, session_info, soon, start, stop, watch};
 
 #[tokio::test]
 async fn a_viewer_is_welcomed_and_shown_the_present() {
@@ -493,9 +310,12 @@ async fn the_daemon_stops_with_viewers_connected() {
     let server = start(HubLimits::default());
     let mut reading = Viewer::join(&server).await.expect("welcome");
     let _stalled = Viewer::join(&server).await.expect("welcome");
+    assert_eq!(reading.snapshot().await, [], "nothing was published yet");
     let (sent, _) = batch(60_000);
-    for _ in 0..40 {
+    for _ in 0..150 {
         server.hub().publish_paths(sent.clone());
+        let got = reading.next_data().await;
+        assert!(matches!(got, Some(TracerEvent::Paths(_))), "each fills the stalled one's window");
     }
     let last_word = async {
         let mut last = None;
