@@ -9,7 +9,7 @@ use crate::camera::{Bounds, ViewCamera};
 use crate::command::{CameraCommand, CloudCommand, Command};
 use crate::connection::{Delivery, Link};
 use crate::film::Film;
-use crate::gpu::Renderer;
+use crate::gpu::{Quality, Renderer};
 use crate::keys;
 use crate::model::{Model, corners, drawing_aids};
 use crate::panel::{self, Panel, Slot};
@@ -39,6 +39,8 @@ pub struct Viewer {
     waiting: VecDeque<common::PathBatch>,
     panels: Vec<(Slot, Box<dyn Panel>)>,
     stale: Stale,
+    /// The graphics card holds paths of this viewer, not of one before it.
+    uploaded_any: bool,
     started: Instant,
     closing: bool,
     /// Commands for the camera that wait for the scene.
@@ -68,6 +70,7 @@ impl Viewer {
             waiting: VecDeque::new(),
             panels: panel::all(),
             stale: Stale { surfaces: true, aids: true },
+            uploaded_any: false,
             started: Instant::now(),
             closing: false,
             script: Vec::new(),
@@ -75,10 +78,15 @@ impl Viewer {
     }
 
     /// Sets up what egui and the graphics card need, once.
-    pub fn install(ctx: &egui::Context, gpu: &RenderState) {
+    pub fn install(ctx: &egui::Context, gpu: &RenderState, quality: Quality) {
         theme::install(ctx);
-        let renderer =
-            Renderer::new(gpu.device.clone(), gpu.queue.clone(), gpu.target_format, PAGE_POINTS);
+        let renderer = Renderer::new(
+            gpu.device.clone(),
+            gpu.queue.clone(),
+            gpu.target_format,
+            PAGE_POINTS,
+            quality,
+        );
         gpu.renderer.write().callback_resources.insert(renderer);
     }
 
@@ -119,12 +127,12 @@ impl Viewer {
         &self.status
     }
 
-    /// Takes in what has come.
-    pub fn receive(&mut self) {
-        if let Some(link) = &self.link {
-            let delivery = link.take();
-            self.take(delivery);
-        }
+    /// Takes in what has come. True when there was anything.
+    pub fn receive(&mut self) -> bool {
+        let before = self.store.counts();
+        let delivery = self.link.as_ref().map(Link::take).unwrap_or_default();
+        let mut news = !delivery.is_empty();
+        self.take(delivery);
         let time = self.started.elapsed().as_secs_f64();
         for _ in 0..BATCHES_PER_FRAME {
             let Some(batch) = self.waiting.pop_front() else { break };
@@ -137,6 +145,8 @@ impl Viewer {
         let counts = self.store.counts();
         self.status.path_rate.note(time, counts.paths);
         self.status.byte_rate.note(time, counts.bytes);
+        news |= counts != before;
+        news
     }
 
     /// Takes in a delivery; public for harnesses without a network.
@@ -264,6 +274,9 @@ impl Viewer {
         }
         if std::mem::take(&mut self.stale.aids) {
             renderer.set_aids(&self.aids());
+        }
+        if !std::mem::replace(&mut self.uploaded_any, true) {
+            renderer.retain_from(u64::MAX);
         }
         renderer.retain_from(self.store.first_serial());
         upload_paths(&self.store, renderer)

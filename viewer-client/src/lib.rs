@@ -15,6 +15,7 @@ pub mod gpu;
 pub mod headless;
 pub mod keys;
 pub mod model;
+pub mod pace;
 pub mod panel;
 pub mod rates;
 pub mod run;

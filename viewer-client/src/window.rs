@@ -1,16 +1,16 @@
 //! The viewer in a window of the desktop.
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::Instant;
 
 use anyhow::{Context as _, anyhow};
 use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 
 use crate::app::Viewer;
 use crate::connection::{Link, Waker};
+use crate::gpu::Quality;
+use crate::pace::{FRAME, Pace};
 
-/// News is shown this often at most.
-const FRAME: Duration = Duration::from_millis(33);
 /// The window's first size in points.
 const SIZE: [f32; 2] = [1440.0, 860.0];
 /// The smallest size at which all panels are legible.
@@ -45,12 +45,12 @@ pub fn run(viewer: Viewer, address: String) -> anyhow::Result<()> {
     };
     let create = move |cc: &eframe::CreationContext<'_>| {
         let gpu = cc.wgpu_render_state.as_ref().context("no graphics card was found")?;
-        Viewer::install(&cc.egui_ctx, gpu);
+        Viewer::install(&cc.egui_ctx, gpu, quality(gpu));
         let mut viewer = viewer;
         let ctx = cc.egui_ctx.clone();
         let waker: Waker = Box::new(move || ctx.request_repaint_after(FRAME));
         viewer.set_link(Link::start(address, waker)?);
-        let app: Box<dyn eframe::App> = Box::new(Window { viewer });
+        let app: Box<dyn eframe::App> = Box::new(Window { viewer, pace: Pace::default() });
         Ok(app)
     };
     eframe::run_native("Lvis", options, Box::new(create)).map_err(|error| {
@@ -61,13 +61,30 @@ pub fn run(viewer: Viewer, address: String) -> anyhow::Result<()> {
     })
 }
 
+/// Programs that stand in for a graphics card spend most of their time on samples.
+fn quality(gpu: &egui_wgpu::RenderState) -> Quality {
+    match gpu.adapter.get_info().device_type {
+        wgpu::DeviceType::Cpu => Quality::Fast,
+        _ => Quality::Smooth,
+    }
+}
+
 struct Window {
     viewer: Viewer,
+    pace: Pace,
 }
 
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
-        self.viewer.receive();
+        match self.pace.wait(Instant::now()) {
+            Some(wait) => ui.ctx().request_repaint_after(wait),
+            None if self.viewer.receive() => {
+                self.pace.news(Instant::now());
+                // The next frame begins when this one is done, and tells how long it took.
+                ui.ctx().request_repaint();
+            }
+            None => {}
+        }
         if let Some(gpu) = frame.wgpu_render_state()
             && self.viewer.upload(gpu)
         {

@@ -270,7 +270,7 @@ impl ViewCamera {
         self.turn(-33.0, -15.0);
         self.frame();
         let to_camera = (origin - self.pivot).clamp_length_max(4.0 * self.bounds.radius());
-        self.pivot += 0.34 * to_camera;
-        self.distance *= 1.4;
+        self.pivot += 0.4 * to_camera;
+        self.distance *= 1.5;
     }
 }

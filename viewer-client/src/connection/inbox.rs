@@ -38,6 +38,16 @@ pub struct Delivery {
 }
 
 impl Delivery {
+    /// True when nothing was delivered.
+    pub fn is_empty(&self) -> bool {
+        let quiet = self.state.is_none() && self.welcome.is_none() && self.scene.is_none();
+        quiet
+            && self.statistics.is_none()
+            && self.batches.is_empty()
+            && self.film.is_empty()
+            && self.gaps == 0
+    }
+
     fn push(&mut self, event: TracerEvent) {
         match event {
             TracerEvent::Welcome(welcome) => {

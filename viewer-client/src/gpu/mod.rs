@@ -12,4 +12,4 @@ mod renderer;
 mod target;
 
 pub use lines::PageRange;
-pub use renderer::{Picture, Renderer, UploadBudget, ViewportCallback};
+pub use renderer::{Picture, Quality, Renderer, ViewportCallback};

@@ -3,7 +3,7 @@
 use shaders::{Attribute, AttributeFormat, FrameUniforms, Shader};
 use wgpu::util::DeviceExt as _;
 
-use super::target::{COLOR_FORMAT, DEPTH_FORMAT, SAMPLES};
+use super::target::{COLOR_FORMAT, DEPTH_FORMAT};
 
 /// The uniforms of a picture, in group 0 of every pipeline.
 #[derive(Debug)]
@@ -11,10 +11,12 @@ pub(super) struct FrameGroup {
     buffer: wgpu::Buffer,
     pub(super) layout: wgpu::BindGroupLayout,
     pub(super) group: wgpu::BindGroup,
+    /// Samples a pixel of the picture.
+    pub(super) samples: u32,
 }
 
 impl FrameGroup {
-    pub(super) fn new(device: &wgpu::Device) -> Self {
+    pub(super) fn new(device: &wgpu::Device, samples: u32) -> Self {
         let zeroed: FrameUniforms = bytemuck::Zeroable::zeroed();
         let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("frame uniforms"),
@@ -39,7 +41,7 @@ impl FrameGroup {
             layout: &layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
         });
-        Self { buffer, layout, group }
+        Self { buffer, layout, group, samples }
     }
 
     pub(super) fn write(&self, queue: &wgpu::Queue, uniforms: &FrameUniforms) {
@@ -118,7 +120,7 @@ impl Recipe<'_> {
                 bias: wgpu::DepthBiasState::default(),
             }),
             multisample: wgpu::MultisampleState {
-                count: SAMPLES,
+                count: frame.samples,
                 ..wgpu::MultisampleState::default()
             },
             fragment: Some(wgpu::FragmentState {

@@ -22,11 +22,13 @@ pub struct Picture {
     pub surfaces: bool,
 }
 
-/// Points that may still be uploaded during this frame.
+/// How well to draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct UploadBudget {
-    /// How many.
-    pub points: usize,
+pub enum Quality {
+    /// Four samples a pixel.
+    Smooth,
+    /// One, for graphics drivers that are slow.
+    Fast,
 }
 
 /// All buffers, textures and pipelines of the viewport.
@@ -50,8 +52,13 @@ impl Renderer {
         queue: wgpu::Queue,
         format: wgpu::TextureFormat,
         page_points: usize,
+        quality: Quality,
     ) -> Self {
-        let frame = FrameGroup::new(&device);
+        let samples = match quality {
+            Quality::Smooth => 4,
+            Quality::Fast => 1,
+        };
+        let frame = FrameGroup::new(&device, samples);
         Self {
             mesh: Mesh::new(&device, &frame),
             lines: Lines::new(&device, &frame, page_points),
@@ -106,7 +113,7 @@ impl Renderer {
         let target = match self.target.take() {
             Some(target) if target.size == picture.size => target,
             _ => {
-                let target = Target::new(&self.device, picture.size);
+                let target = Target::new(&self.device, picture.size, self.frame.samples);
                 self.composite.set_picture(&self.device, &target.resolved);
                 target
             }

@@ -4,21 +4,19 @@
 pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Reversed depth needs floats.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// Samples a pixel; four are available everywhere.
-pub(super) const SAMPLES: u32 = 4;
-
 /// A picture of one size.
 #[derive(Debug)]
 pub(super) struct Target {
     pub(super) size: [u32; 2],
-    samples: wgpu::TextureView,
+    /// The picture with several samples a pixel, where there are several.
+    samples: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
     /// The finished picture.
     pub(super) resolved: wgpu::TextureView,
 }
 
 impl Target {
-    pub(super) fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
+    pub(super) fn new(device: &wgpu::Device, size: [u32; 2], samples: u32) -> Self {
         let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
         let view = |label, format, sample_count, usage| {
             let texture = device.create_texture(&wgpu::TextureDescriptor {
@@ -35,8 +33,9 @@ impl Target {
         };
         Self {
             size,
-            samples: view("picture samples", COLOR_FORMAT, SAMPLES, attachment),
-            depth: view("picture depth", DEPTH_FORMAT, SAMPLES, attachment),
+            samples: (samples > 1)
+                .then(|| view("picture samples", COLOR_FORMAT, samples, attachment)),
+            depth: view("picture depth", DEPTH_FORMAT, samples, attachment),
             resolved: view(
                 "picture",
                 COLOR_FORMAT,
@@ -48,15 +47,19 @@ impl Target {
 
     /// Begins the picture: nothing in it, at infinity.
     pub(super) fn begin<'a>(&self, encoder: &'a mut wgpu::CommandEncoder) -> wgpu::RenderPass<'a> {
+        let (view, resolve_target, store) = match &self.samples {
+            Some(samples) => (samples, Some(&self.resolved), wgpu::StoreOp::Discard),
+            None => (&self.resolved, None, wgpu::StoreOp::Store),
+        };
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("picture"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.samples,
+                view,
                 depth_slice: None,
-                resolve_target: Some(&self.resolved),
+                resolve_target,
                 ops: wgpu::Operations {
                     load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                    store: wgpu::StoreOp::Discard,
+                    store,
                 },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {

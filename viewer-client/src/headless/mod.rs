@@ -8,6 +8,7 @@ use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguratio
 
 use crate::app::Viewer;
 use crate::connection::{Link, Waker};
+use crate::gpu::Quality;
 use crate::window::graphics_setup;
 
 /// A daemon that has sent nothing for this long will not.
@@ -105,7 +106,7 @@ impl Stage {
             .or_else(|_| runtime.block_on(graphics(wgpu::Backends::GL)))
             .context("no graphics driver; on Debian, install mesa-vulkan-drivers")?;
         let ctx = egui::Context::default();
-        Viewer::install(&ctx, &gpu);
+        Viewer::install(&ctx, &gpu, Quality::Smooth);
         let target = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("window"),
             size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
@@ -136,11 +137,14 @@ impl Stage {
             time: Some(self.time),
             ..egui::RawInput::default()
         };
+        let started = Instant::now();
         // Half a second a frame: animations are over after a few frames.
         self.time += 0.5;
         let mut output = self.ctx.run_ui(input, |ui| viewer.ui(ui));
         let primitives = self.ctx.tessellate(output.shapes, output.pixels_per_point);
-        self.draw(&primitives, &mut output.textures_delta)
+        self.draw(&primitives, &mut output.textures_delta)?;
+        tracing::debug!("a frame took {:.0} ms", 1e3 * started.elapsed().as_secs_f64());
+        Ok(())
     }
 
     fn draw(
