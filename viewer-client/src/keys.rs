@@ -48,8 +48,8 @@ impl Group {
 
 /// The mouse, for the help sheet; [`crate::panel`]'s viewport gives it this meaning.
 pub const MOUSE: [(&str, &str); 5] = [
-    ("Left or middle drag", "turn round the pivot; look about while flying"),
-    ("Right drag, Shift + drag", "shift the view"),
+    ("Left, middle drag", "turn round the pivot; look about while flying"),
+    ("Right, Shift+drag", "shift the view"),
     ("Wheel", "come closer to the point under the cursor"),
     ("Double click", "show the whole scene"),
     ("W A S D, Q E", "while flying: move, down and up; Shift is faster"),
@@ -129,6 +129,18 @@ pub const BINDINGS: &[Binding] = &[
     bind(plain(Key::F1), Group::View, "this sheet; ? does it, too", |_| help()),
     bind(ctrl(Key::Q), Group::View, "quit", |_| Command::Quit),
 ];
+
+/// A key as it is printed on keyboards, with its modifiers.
+pub fn key_name(shortcut: KeyboardShortcut) -> String {
+    let key = match shortcut.logical_key {
+        Key::OpenBracket => "[",
+        Key::CloseBracket => "]",
+        Key::Comma => ",",
+        Key::Period => ".",
+        other => other.name(),
+    };
+    if shortcut.modifiers.ctrl { format!("Ctrl+{key}") } else { key.to_owned() }
+}
 
 /// The commands of the keys pressed since the last frame.
 pub fn pressed(ctx: &egui::Context, world: &World<'_>, commands: &mut Vec<Command>) {

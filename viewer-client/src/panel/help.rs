@@ -1,11 +1,15 @@
 //! The sheet of keys.
 
-use egui::{Align2, Grid, RichText, Ui, Window, vec2};
+use egui::{Align, Frame, Grid, Id, Label, Layout, Modal, RichText, Ui};
 
 use super::Panel;
 use crate::command::{Command, LayoutCommand, Switch};
-use crate::keys::{BINDINGS, Group, MOUSE};
+use crate::keys::{BINDINGS, Group, MOUSE, key_name};
+use crate::theme;
 use crate::world::World;
+
+/// Widest that the sheet gets, in points.
+const WIDTH: f32 = 1080.0;
 
 /// Every key and mouse button.
 #[derive(Debug)]
@@ -13,47 +17,53 @@ pub(super) struct Help;
 
 impl Panel for Help {
     fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
-        let mut open = world.settings.layout.help;
-        if !open {
+        if !world.settings.layout.help {
             return;
         }
-        Window::new("Keys and mouse")
-            .open(&mut open)
-            .collapsible(false)
-            .resizable(false)
-            .anchor(Align2::CENTER_CENTER, vec2(0.0, 0.0))
-            .show(ui.ctx(), |ui| {
-                ui.horizontal_top(|ui| {
-                    ui.vertical(|ui| {
-                        section(ui, "Mouse", MOUSE.map(|(k, h)| (k.to_owned(), h)));
-                        section(ui, Group::Paths.title(), keys(ui, Group::Paths));
-                    });
-                    ui.add_space(28.0);
-                    ui.vertical(|ui| section(ui, Group::Camera.title(), keys(ui, Group::Camera)));
-                    ui.add_space(28.0);
-                    ui.vertical(|ui| section(ui, Group::View.title(), keys(ui, Group::View)));
-                });
-                ui.add_space(6.0);
-                let text = "A path starts at the light and ends at the camera.";
-                ui.label(RichText::new(text).weak());
-            });
-        if !open {
+        let frame = Frame::popup(ui.style()).inner_margin(20);
+        let modal = Modal::new(Id::unique("help")).frame(frame).show(ui.ctx(), sheet);
+        if modal.should_close() || modal.inner {
             commands.push(Command::Layout(LayoutCommand::Help(Switch::Off)));
         }
     }
 }
 
-fn keys(ui: &Ui, group: Group) -> Vec<(String, &'static str)> {
+/// The sheet; true when its button was clicked.
+fn sheet(ui: &mut Ui) -> bool {
+    let width = (ui.ctx().content_rect().width() - 60.0).min(WIDTH);
+    ui.set_width(width);
+    ui.label(RichText::new("Keys and mouse").heading().strong());
+    ui.add_space(8.0);
+    ui.columns(3, |columns| {
+        if let [left, middle, right] = columns {
+            section(left, "Mouse", MOUSE.map(|(k, h)| (k.to_owned(), h)));
+            section(left, Group::Paths.title(), keys(Group::Paths));
+            section(middle, Group::Camera.title(), keys(Group::Camera));
+            section(right, Group::View.title(), keys(Group::View));
+        }
+    });
+    ui.horizontal(|ui| {
+        let text = "A path starts at the light and ends at the camera.";
+        ui.label(RichText::new(text).weak());
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.button("Close").on_hover_text("F1, ? or Escape").clicked()
+        })
+        .inner
+    })
+    .inner
+}
+
+fn keys(group: Group) -> Vec<(String, &'static str)> {
     let of_group = BINDINGS.iter().filter(|b| b.group == group);
-    of_group.map(|b| (ui.ctx().format_shortcut(&b.shortcut), b.help)).collect()
+    of_group.map(|b| (key_name(b.shortcut), b.help)).collect()
 }
 
 fn section(ui: &mut Ui, title: &str, lines: impl IntoIterator<Item = (String, &'static str)>) {
-    ui.label(RichText::new(title).strong());
+    ui.label(RichText::new(title).strong().color(theme::ACCENT));
     Grid::new(title).num_columns(2).spacing([14.0, 4.0]).show(ui, |ui| {
         for (key, help) in lines {
             ui.label(RichText::new(key).monospace().strong());
-            ui.label(help);
+            ui.add(Label::new(help).wrap());
             ui.end_row();
         }
     });

@@ -4,7 +4,7 @@ use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
 
 use super::Panel;
 use crate::command::{Command, LayoutCommand, PanelName, Switch, ThemeName};
-use crate::keys::{BINDINGS, Binding, Group};
+use crate::keys::{BINDINGS, Binding, Group, key_name};
 use crate::theme;
 use crate::world::World;
 
@@ -41,7 +41,7 @@ fn group(ui: &mut Ui, world: &World<'_>, group: Group, commands: &mut Vec<Comman
 
 fn item(ui: &mut Ui, world: &World<'_>, binding: &Binding, commands: &mut Vec<Command>) {
     let label = super::widgets::capitalised(binding.help);
-    let key = ui.ctx().format_shortcut(&binding.shortcut);
+    let key = key_name(binding.shortcut);
     if ui.add(Button::new(label).shortcut_text(key)).clicked() {
         commands.push((binding.command)(world));
         ui.close();

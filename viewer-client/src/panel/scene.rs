@@ -57,7 +57,7 @@ fn views(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
             commands.push(Command::Camera(CameraCommand::Frame));
         }
         let through = ui
-            .selectable_label(world.camera.is_through(), "Render camera")
+            .selectable_label(world.camera.is_through(), "Camera view")
             .on_hover_text("Look through the camera that takes the picture (0)");
         if through.clicked() {
             commands.push(Command::Camera(CameraCommand::Through(Switch::Toggle)));
