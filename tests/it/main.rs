@@ -7,6 +7,7 @@ mod citations;
 mod daemon;
 mod documents;
 mod layers;
+mod reconnect;
 mod stream;
 mod tidy;
 mod workspace;

@@ -117,9 +117,10 @@ impl Viewer {
         self.store.counts().paths
     }
 
-    /// True when nothing that has come is still to be taken in.
+    /// True when scene, image, statistics and all paths that have come are taken in.
     pub fn is_settled(&self) -> bool {
-        self.waiting.is_empty() && self.model.is_some() && self.film.size() != [0, 0]
+        let whole = self.model.is_some() && self.film.size() != [0, 0];
+        whole && self.waiting.is_empty() && self.status.statistics.is_some()
     }
 
     /// What is known of the daemon.

@@ -1,6 +1,6 @@
 //! The viewer's program.
 
-use std::io::Write as _;
+use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
 
 use clap::Parser as _;
@@ -16,7 +16,11 @@ const DEFAULT_LOG: &str = "warn,viewer_client=info,wgpu_hal=off,egui_wgpu=error"
 
 fn main() -> ExitCode {
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(DEFAULT_LOG));
-    tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).init();
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_ansi(std::io::stderr().is_terminal())
+        .with_writer(std::io::stderr)
+        .init();
     match viewer_client::run::run(Cli::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -1,6 +1,6 @@
 //! How paths are drawn, and how many are kept.
 
-use egui::{ProgressBar, RichText, Ui};
+use egui::{Button, ProgressBar, RichText, Ui};
 
 use super::Panel;
 use super::widgets::{Scale, choice, row, slider, toggle};
@@ -27,7 +27,7 @@ fn buttons(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(CloudCommand)) 
     let frozen = world.settings.cloud.frozen;
     let label = if frozen { "Go on" } else { "Freeze" };
     let freeze = ui
-        .selectable_label(frozen, label)
+        .add(Button::new(label).selected(frozen))
         .on_hover_text("Hold the cloud still; the chains go on (Space)");
     if freeze.clicked() {
         push(CloudCommand::Freeze(Switch::to(!frozen)));

@@ -1,6 +1,6 @@
 //! How surfaces and drawing aids look, and what the scene holds.
 
-use egui::{RichText, Ui};
+use egui::{Button, RichText, Ui};
 
 use super::Panel;
 use super::widgets::{Scale, choice, slider, toggle};
@@ -57,13 +57,13 @@ fn views(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
             commands.push(Command::Camera(CameraCommand::Frame));
         }
         let through = ui
-            .selectable_label(world.camera.is_through(), "Camera view")
+            .add(Button::new("Camera view").selected(world.camera.is_through()))
             .on_hover_text("Look through the camera that takes the picture (0)");
         if through.clicked() {
             commands.push(Command::Camera(CameraCommand::Through(Switch::Toggle)));
         }
         let fly = ui
-            .selectable_label(world.camera.is_flying(), "Fly")
+            .add(Button::new("Fly").selected(world.camera.is_flying()))
             .on_hover_text("Move with W A S D, Q and E; look about with the mouse (F)");
         if fly.clicked() {
             commands.push(Command::Camera(CameraCommand::Fly(Switch::Toggle)));

@@ -20,7 +20,7 @@ impl Panel for StatisticsPanel {
             empty_state(
                 ui,
                 "No statistics yet",
-                "Rates and acceptances appear as soon as a daemon is connected.",
+                "Rates and acceptances appear within a second of connecting to a daemon.",
             );
             return;
         };

@@ -85,7 +85,8 @@ fn figures(ui: &mut Ui, world: &World<'_>) {
     let bytes = format::bytes(world.status.byte_rate.per_second() as u64);
     let paths = format::count(world.status.path_rate.per_second());
     figure(ui, "paths/s", &paths, &format!("Paths received a second, {bytes}/s"));
-    let mutations = statistics.map_or(0.0, |s| s.mutations_per_second);
+    let current = statistics.filter(|_| world.status.is_connected());
+    let mutations = current.map_or(0.0, |s| s.mutations_per_second);
     figure(ui, "mutations/s", &format::count(mutations), "Steps of all chains a second");
 }
 

@@ -7,7 +7,7 @@ use shaders::{FrameUniforms, PALETTE_SIZE};
 use crate::camera::NEAR;
 use crate::command::{ColorMode, Shading};
 use crate::gpu::{PageRange, Picture};
-use crate::settings::{CloudSettings, SceneSettings};
+use crate::settings::SceneSettings;
 use crate::theme;
 use crate::world::World;
 
@@ -17,6 +17,8 @@ const CUTAWAY: f32 = 0.07;
 const FADED: f32 = 0.10;
 /// Opacity of a path's last edge where it reaches the pinhole, relative to the rest.
 const AT_LENS: f32 = 0.06;
+/// Light ground outshines thin lines; there they are this much more opaque.
+const ON_LIGHT_GROUND: f32 = 1.7;
 /// How much crossing paths add up on dark ground: 0 cover, 1 add.
 const GLOW: f32 = 0.6;
 
@@ -33,7 +35,7 @@ pub(super) fn of(world: &World<'_>, size: [u32; 2], pixels_per_point: f32) -> Pi
         eye: lens.eye.extend(NEAR),
         up: world.camera.up().extend(if dark { 1.0 } else { 0.0 }),
         viewport: Vec4::new(width, height, 1.0 / width, 1.0 / height),
-        line: line(cloud, pixels_per_point, world.camera.is_through()),
+        line: line(world, pixels_per_point),
         fade: Vec4::new(
             cloud.fade,
             FADED,
@@ -59,10 +61,13 @@ pub(super) fn of(world: &World<'_>, size: [u32; 2], pixels_per_point: f32) -> Pi
     }
 }
 
-fn line(cloud: &CloudSettings, pixels_per_point: f32, through: bool) -> Vec4 {
+fn line(world: &World<'_>, pixels_per_point: f32) -> Vec4 {
+    let cloud = &world.settings.cloud;
     // Seen from the pinhole itself, the last edges are points on the screen and hide nothing.
-    let at_lens = if through { 1.0 } else { AT_LENS };
-    Vec4::new(cloud.width * pixels_per_point, cloud.opacity, cloud.hidden, at_lens)
+    let at_lens = if world.camera.is_through() { 1.0 } else { AT_LENS };
+    let strength = if world.settings.layout.dark { 1.0 } else { ON_LIGHT_GROUND };
+    let opacity = (strength * cloud.opacity).min(1.0);
+    Vec4::new(cloud.width * pixels_per_point, opacity, cloud.hidden, at_lens)
 }
 
 fn surface(scene: &SceneSettings) -> Vec4 {
