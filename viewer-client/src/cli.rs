@@ -7,6 +7,14 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::command;
 
+const EXAMPLES: &str = "\
+Examples:
+  viewer-client                          a built-in scene, with a daemon of its own
+  viewer-client --scene caustic          another one, or a scene file
+  viewer-client 127.0.0.1:50061          a running `tracer-server serve`
+  viewer-client --headless --screenshot-to view.png --wait-paths 20000
+  viewer-client watch 127.0.0.1:50061 --count 10";
+
 /// Shows the scene, its light paths, and the picture they make.
 #[derive(Debug, Parser)]
 #[command(
@@ -14,12 +22,7 @@ use crate::command;
     version,
     subcommand_negates_reqs = true,
     args_conflicts_with_subcommands = true,
-    after_help = "Examples:\n  \
-        viewer-client                              a built-in scene, with a daemon of its own\n  \
-        viewer-client --scene caustic              another one, or a scene file\n  \
-        viewer-client 127.0.0.1:50061              a running `tracer-server serve`\n  \
-        viewer-client 127.0.0.1:50061 --headless --screenshot-to view.png --wait-paths 20000\n  \
-        viewer-client watch 127.0.0.1:50061 --count 10",
+    after_help = EXAMPLES,
     after_long_help = long_help()
 )]
 pub struct Cli {
@@ -84,8 +87,9 @@ pub struct WatchArgs {
 fn long_help() -> String {
     let comment = ("# ...", "a comment, to the end of the line");
     let lines = command::forms().chain([comment]);
-    let lines: Vec<String> = lines.map(|(form, help)| format!("  {form:<52} {help}")).collect();
-    format!("Commands of --run (keys and menus use the same):\n{}", lines.join("\n"))
+    let lines: Vec<String> = lines.map(|(form, help)| format!("  {form:<50} {help}")).collect();
+    let commands = lines.join("\n");
+    format!("{EXAMPLES}\n\nCommands of --run (keys and menus use the same):\n{commands}")
 }
 
 fn address(text: &str) -> Result<String, String> {

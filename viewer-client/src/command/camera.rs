@@ -72,7 +72,7 @@ impl fmt::Display for Side {
 pub(super) const FORMS: &[Form] = &[
     ("camera orbit RIGHT UP", "turn round the pivot, in degrees"),
     ("camera pan RIGHT UP", "shift the picture, in heights of the viewport"),
-    ("camera zoom FACTOR X Y", "come closer towards a point, in half heights of the viewport"),
+    ("camera zoom FACTOR X Y", "come closer to a point X, Y"),
     ("camera look RIGHT UP", "turn the head, in degrees"),
     ("camera move FORWARD RIGHT UP", "step, in sizes of the scene"),
     ("camera fly on|off|toggle", "fly instead of orbiting"),

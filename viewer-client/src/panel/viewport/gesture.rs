@@ -1,6 +1,6 @@
 //! Mouse and held keys as camera commands.
 
-use egui::{Key, PointerButton, Response, Ui, Vec2, vec2};
+use egui::{Key, PointerButton, Response, Ui, Vec2};
 
 use crate::command::{CameraCommand, Command};
 use crate::world::World;
@@ -83,9 +83,4 @@ fn flight(ui: &Ui) -> Option<CameraCommand> {
     }
     ui.ctx().request_repaint();
     Some(CameraCommand::Move(step.map(|s| s * seconds)))
-}
-
-/// Half the size of a rectangle that fills `gate` of `whole`.
-pub(super) fn gate_half(whole: Vec2, width: f32, height: f32) -> Vec2 {
-    0.5 * vec2(whole.x * width, whole.y * height)
 }

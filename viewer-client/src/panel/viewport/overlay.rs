@@ -5,7 +5,6 @@ use egui::{
 };
 use glam::Vec3;
 
-use super::gesture::gate_half;
 use crate::command::ColorMode;
 use crate::format;
 use crate::status::LinkState;
@@ -36,8 +35,8 @@ pub(super) fn paint(ui: &Ui, rect: Rect, world: &World<'_>) {
 /// Darkens what the render camera does not see.
 fn gate(painter: &Painter, rect: Rect, world: &World<'_>) {
     let Some(gate) = world.camera.gate(rect.aspect_ratio()) else { return };
-    let half = gate_half(rect.size(), gate.width, gate.height);
-    let inner = Rect::from_center_size(rect.center(), 2.0 * half);
+    let size = vec2(rect.width() * gate.width, rect.height() * gate.height);
+    let inner = Rect::from_center_size(rect.center(), size);
     let shade = Color32::from_black_alpha(120);
     let bands = [
         Rect::from_min_max(rect.min, pos2(rect.right(), inner.top())),
