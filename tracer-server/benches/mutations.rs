@@ -1,0 +1,139 @@
+//! How many mutations a second each strategy makes, and what share that is of what the rays alone
+//! would allow: `cargo bench -p tracer-server`.
+//!
+//! One thread. The limit is measured in the same run: rays like those of the scene's own paths, cast
+//! with nothing else around them.
+
+use std::hint::black_box;
+use std::io::{self, Write as _};
+use std::time::{Duration, Instant};
+
+use comfy_table::Table;
+use comfy_table::presets::UTF8_FULL_CONDENSED;
+use glam::DVec2;
+use tracer_server::chain::{Ensemble, EnsembleSettings};
+use tracer_server::math::{Rng, Stream};
+use tracer_server::mutation::StrategyWeights;
+use tracer_server::path::{BidirectionalSampler, Vertex};
+use tracer_server::scene::load::load;
+use tracer_server::scene::{Scene, Tracer};
+
+/// Each figure is the best of this many rounds.
+const ROUNDS: usize = 5;
+/// Steps of a chain in a round.
+const STEPS: u64 = 4000;
+
+fn main() -> anyhow::Result<()> {
+    let named: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
+    let scenes = if named.is_empty() {
+        ["cornell", "caustic", "mirror-caustic", "door"].map(str::to_owned).to_vec()
+    } else {
+        named
+    };
+    let mut table = Table::new();
+    table.load_style(UTF8_FULL_CONDENSED).set_header([
+        "scene",
+        "strategies",
+        "mutations/s",
+        "rays, shadow rays",
+        "rays alone",
+        "share",
+    ]);
+    for name in &scenes {
+        let scene = Scene::new(&load(name)?.description)?;
+        let limits = ray_rates(&scene);
+        for (strategies, weights) in mixtures() {
+            table.add_row(measure(&scene, strategies, weights, limits));
+        }
+    }
+    writeln!(io::stdout().lock(), "{}", table.trim_fmt())?;
+    Ok(())
+}
+
+/// The mixture as it is used, and each strategy nearly alone: the independent mutation stays in at
+/// one per cent, so that no chain is confined to where it starts.
+fn mixtures() -> [(&'static str, StrategyWeights); 4] {
+    let alone = StrategyWeights { bidirectional: 0.0, independent: 0.01, lens: 0.0 };
+    [
+        ("all", StrategyWeights::default()),
+        ("bidirectional", StrategyWeights { bidirectional: 0.99, ..alone }),
+        ("independent", alone),
+        ("lens", StrategyWeights { lens: 0.99, ..alone }),
+    ]
+}
+
+fn measure(
+    scene: &Scene,
+    strategies: &str,
+    weights: StrategyWeights,
+    (closest, shadow): (f64, f64),
+) -> Vec<String> {
+    let settings = EnsembleSettings {
+        seed: 1,
+        chains: 16,
+        threads: 1,
+        weights,
+        bootstrap_samples: 1 << 16,
+    };
+    let mut ensemble = Ensemble::new(scene, &settings, |_| ());
+    ensemble.advance(scene, STEPS, None);
+    let before = ensemble.statistics();
+    let best = best_time(|| drop(ensemble.advance(scene, STEPS, None)));
+    let after = ensemble.statistics();
+    let per_step = |a: u64, b: u64| (a - b) as f64 / (after.steps - before.steps) as f64;
+    let rays = per_step(after.rays, before.rays);
+    let shadows = per_step(after.shadow_rays, before.shadow_rays);
+    let rate = (STEPS * u64::from(settings.chains)) as f64 / best.as_secs_f64();
+    let limit = 1.0 / (rays / closest + shadows / shadow);
+    vec![
+        scene.name().to_owned(),
+        strategies.to_owned(),
+        format!("{:.2} M", rate / 1e6),
+        format!("{rays:.2}, {shadows:.2}"),
+        format!("{:.2} M", limit / 1e6),
+        format!("{:.0} %", 100.0 * rate / limit),
+    ]
+}
+
+/// Closest-hit and shadow rays a second along the edges of the scene's own paths.
+fn ray_rates(scene: &Scene) -> (f64, f64) {
+    let tracer = Tracer::new(scene);
+    let mut sampler = BidirectionalSampler::new(&tracer);
+    let mut rng = Rng::new(1, Stream::Laboratory, 0);
+    let mut edges: Vec<(Vertex, Vertex)> = Vec::new();
+    while edges.len() < 200_000 {
+        let film = DVec2::new(rng.uniform(), rng.uniform());
+        sampler.sample(&tracer, film, &mut rng, |path, _| {
+            // One edge of each path, so that successive rays have nothing in common.
+            let j = rng_free_index(path.edge_count(), edges.len());
+            edges.push((path.vertices()[j + 1], path.vertices()[j]));
+        });
+    }
+    let count = edges.len() as f64;
+    let closest = best_time(|| {
+        for (from, to) in &edges {
+            let direction = (to.position - from.position).normalize_or_zero();
+            black_box(scene.closest(&from.anchor(), direction));
+        }
+    });
+    let shadow = best_time(|| {
+        for (from, to) in &edges {
+            black_box(scene.visible(&from.anchor(), &to.anchor()));
+        }
+    });
+    (count / closest.as_secs_f64(), count / shadow.as_secs_f64())
+}
+
+/// Spreads indices below `n` without drawing random numbers.
+fn rng_free_index(n: usize, counter: usize) -> usize {
+    counter.wrapping_mul(0x9e37_79b9_7f4a_7c15) % n
+}
+
+fn best_time(mut work: impl FnMut()) -> Duration {
+    let time = |work: &mut dyn FnMut()| {
+        let start = Instant::now();
+        work();
+        start.elapsed()
+    };
+    (0..ROUNDS).map(|_| time(&mut work)).min().unwrap_or_default()
+}
