@@ -68,13 +68,8 @@ fn measure(
     weights: StrategyWeights,
     (closest, shadow): (f64, f64),
 ) -> Vec<String> {
-    let settings = EnsembleSettings {
-        seed: 1,
-        chains: 16,
-        threads: 1,
-        weights,
-        bootstrap_samples: 1 << 16,
-    };
+    let settings =
+        EnsembleSettings { seed: 1, chains: 16, threads: 1, weights, bootstrap_samples: 1 << 16 };
     let mut ensemble = Ensemble::new(scene, &settings, |_| ());
     ensemble.advance(scene, STEPS, None);
     let before = ensemble.statistics();

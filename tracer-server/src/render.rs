@@ -168,7 +168,9 @@ pub fn render(
             Budget::Time(limit) => wall.elapsed().as_secs_f64() / limit.as_secs_f64().max(1e-9),
         };
         on_progress(Progress::Rendering(spent.min(1.0)));
-        if spent >= 1.0 || work.is_dark() || rounds.count == 0 {
+        // Even when seeding has taken all the time, one round makes an image.
+        let timed_out = spent >= 1.0 && done > 0;
+        if timed_out || done == rounds.count || work.is_dark() {
             break;
         }
         work.advance(scene, rounds.size(done), settings.ensemble.threads);

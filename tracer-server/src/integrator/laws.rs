@@ -10,7 +10,8 @@ use crate::film::Film;
 use crate::scene::fixtures::{
     Fixture, GLASS, diffuse_room, lambert, specular_room, wall_in_a_pane,
 };
-use crate::scene::{BsdfDescription, Scene};
+use crate::scene::load::load;
+use crate::scene::{BsdfDescription, Scene, builtin};
 
 const BLACK: BsdfDescription = lambert(0.0, 0.0, 0.0);
 
@@ -314,6 +315,24 @@ fn every_step_is_on_the_film() {
     let splats = ensemble.splats().total_luminance();
     assert!((splats / 64_000.0 - 1.0).abs() < 1e-9, "{splats} instead of 64000");
     assert_eq!(ensemble.statistics().not_finite(), 0, "a proposal was no number");
+}
+
+#[test]
+fn built_in_scenes_give_numbers() {
+    for name in builtin::names() {
+        let mut description = load(name).expect("a built-in scene").description;
+        (description.width, description.height) = (16, 12);
+        let scene = Scene::new(&description).expect("a sound scene");
+        let mut ensemble = Ensemble::new(&scene, &settings(2, 32), |_| ());
+        ensemble.advance(&scene, 2000, None);
+        assert_eq!(ensemble.statistics().not_finite(), 0, "{name}: a proposal was no number");
+        for image in
+            [ensemble.image(&scene), path_traced(&scene, 2, 32), bidirectional(&scene, 2, 16)]
+        {
+            assert!(image.pixels().iter().all(|p| p.is_physical()), "{name}: not a number");
+            assert!(image.mean().luminance() > 0.0, "{name}: black");
+        }
+    }
 }
 
 #[test]

@@ -201,7 +201,13 @@ impl Mutation for Bidirectional {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec2;
+    use tests::chi_square_test;
+
     use super::*;
+    use crate::math::Stream;
+    use crate::path::BidirectionalSampler;
+    use crate::scene::fixtures::specular_room;
 
     /// The worked example: `L D E` with a pinhole, an area light and at most seven edges.
     #[test]
@@ -223,6 +229,62 @@ mod tests {
         let speculars = 0b1011_u128; // L S E
         let count = |edges| ranges(speculars, edges).count_ones();
         assert_eq!([count(1), count(2), count(3)], [0, 1, 1], "only (0,2) and (-1,2)");
+    }
+
+    /// Ends and lengths are drawn as often as their probabilities say, and these add up to one.
+    #[test]
+    fn choices_follow_their_probabilities() {
+        const DRAWS: usize = 200_000;
+        let scene = specular_room().build();
+        let scene = Tracer::new(&scene);
+        let b = Bidirectional { max_edges: scene.max_edges() };
+        let mut rng = Rng::new(1, Stream::Laboratory, 0);
+        for class in ["LDE", "LDSE", "LDDDE"] {
+            let x = a_path(&scene, class);
+            let (mut observed, mut expected) = (Vec::new(), Vec::new());
+            let mut cells = Vec::new();
+            for edges in 1..=x.edge_count() + 1 {
+                let pairs = ranges(end_mask(&x), edges);
+                for kept_light in (0..128).filter(|p| pairs >> p & 1 == 1) {
+                    let from = kept_light + edges - 1;
+                    for added in b.admissible(x.edge_count(), kept_light, edges) {
+                        let to = kept_light + added - 1;
+                        let via = Ends { kept_light, from, to, from_light: 0 };
+                        // All ways to share the new vertices between the two sides.
+                        expected.push(b.selection(&x, via) * added as f64 * DRAWS as f64);
+                        observed.push(0);
+                        cells.push((kept_light, from, added));
+                    }
+                }
+            }
+            let total: f64 = expected.iter().sum();
+            assert!((total / DRAWS as f64 - 1.0).abs() < 1e-12, "{class}: sums to {total}");
+            for _ in 0..DRAWS {
+                let ends = Bidirectional::choose_range(&x, &mut rng).expect("a range");
+                let added = b.choose_length(&x, ends, &mut rng).expect("a length");
+                let drawn = (ends.0, ends.1, added);
+                let cell = cells.iter().position(|&c| c == drawn).expect("a feasible choice");
+                observed[cell] += 1;
+            }
+            let result = chi_square_test(&observed, &expected, 20.0).expect("valid counts");
+            assert!(result.p_value > 1e-7, "{class}: p = {:e}", result.p_value);
+        }
+    }
+
+    /// Some path of a class.
+    fn a_path(scene: &Tracer<'_>, class: &str) -> Path {
+        let mut rng = Rng::new(2, Stream::Laboratory, 0);
+        let mut sampler = BidirectionalSampler::new(scene);
+        let mut found = None;
+        while found.is_none() {
+            let film = DVec2::new(rng.uniform(), rng.uniform());
+            sampler.sample(scene, film, &mut rng, |path, _| {
+                if path.class() == class {
+                    found = Some(path.clone());
+                }
+            });
+        }
+        found.expect("the loop ends with a path")
     }
 
     #[test]
