@@ -201,8 +201,8 @@ impl Mutation for Bidirectional {
 
 #[cfg(test)]
 mod tests {
+    use ::tests::chi_square_test;
     use glam::DVec2;
-    use tests::chi_square_test;
 
     use super::*;
     use crate::math::Stream;
