@@ -1,7 +1,7 @@
 //! The command line: one file a subcommand.
 //!
 //! A subcommand is a file with its `clap::Args` and a `run` that returns an exit code, a variant of
-//! [`Command`], and an arm of [`Command::run`]. Results go to stdout, logs to stderr. Exit codes: 0
+//! [`Command`], and an arm of `Command::run`. Results go to stdout, logs to stderr. Exit codes: 0
 //! done, 1 a check failed, 2 bad usage or input.
 
 pub mod info;
