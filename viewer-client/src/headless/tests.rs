@@ -46,13 +46,13 @@ fn rows_that_differ(a: &RgbaImage, b: &RgbaImage) -> Vec<u32> {
 #[test]
 fn lines_keep_their_width_whatever_their_distance() {
     let Some(mut stage) = stage() else { return };
-    let width = "cloud width 8";
+    let width = "cloud width 20";
     let strong = "cloud opacity 1";
     let empty = picture(&mut stage, &[FAR], &["cloud shown 0"]);
     let far = rows_that_differ(&empty, &picture(&mut stage, &[FAR], &[width, strong]));
     let near = rows_that_differ(&empty, &picture(&mut stage, &[NEAR], &[width, strong]));
     for rows in [&far, &near] {
-        assert!((7..=9).contains(&rows.len()), "a line of 8 pixels covers the rows {rows:?}");
+        assert!((19..=21).contains(&rows.len()), "a line of 20 pixels covers the rows {rows:?}");
         assert!(rows.windows(2).all(|w| w[1] == w[0] + 1), "without a hole: {rows:?}");
     }
     assert!(near[0] < far[0], "what is nearer is seen higher above the middle");
@@ -62,7 +62,7 @@ fn lines_keep_their_width_whatever_their_distance() {
 fn surfaces_hide_what_lies_behind_them() {
     let Some(mut stage) = stage() else { return };
     let behind: &[[f32; 3]] = &[[-400.0, 150.0, -600.0], [400.0, 150.0, -600.0]];
-    let look = ["cloud width 8", "cloud opacity 1", "cloud hidden 0"];
+    let look = ["cloud width 8", "cloud opacity 1", "cloud hidden 0.02"];
     let empty = picture(&mut stage, &[behind], &["cloud shown 0"]);
     let hidden = picture(&mut stage, &[behind], &look);
     assert!(rows_that_differ(&empty, &hidden).is_empty(), "the wall hides the path");
