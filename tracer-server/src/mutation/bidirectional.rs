@@ -243,18 +243,19 @@ mod tests {
             let x = a_path(&scene, class);
             let (mut observed, mut expected) = (Vec::new(), Vec::new());
             let mut cells = Vec::new();
-            for edges in 1..=x.edge_count() + 1 {
+            let starts = |edges: usize| {
                 let pairs = ranges(end_mask(&x), edges);
-                for kept_light in (0..128).filter(|p| pairs >> p & 1 == 1) {
-                    let from = kept_light + edges - 1;
-                    for added in b.admissible(x.edge_count(), kept_light, edges) {
-                        let to = kept_light + added - 1;
-                        let via = Ends { kept_light, from, to, from_light: 0 };
-                        // All ways to share the new vertices between the two sides.
-                        expected.push(b.selection(&x, via) * added as f64 * DRAWS as f64);
-                        observed.push(0);
-                        cells.push((kept_light, from, added));
-                    }
+                (0..128).filter(move |p| pairs >> p & 1 == 1).map(move |p| (p, edges))
+            };
+            for (kept_light, edges) in (1..=x.edge_count() + 1).flat_map(starts) {
+                let from = kept_light + edges - 1;
+                for added in b.admissible(x.edge_count(), kept_light, edges) {
+                    let to = kept_light + added - 1;
+                    let via = Ends { kept_light, from, to, from_light: 0 };
+                    // All ways to share the new vertices between the two sides.
+                    expected.push(b.selection(&x, via) * added as f64 * DRAWS as f64);
+                    observed.push(0);
+                    cells.push((kept_light, from, added));
                 }
             }
             let total: f64 = expected.iter().sum();
