@@ -17,7 +17,7 @@ use crate::scene::Scene;
 /// Mutations of all chains together in one round: about a tenth of a second of one core.
 const ROUND_MUTATIONS: u64 = 1 << 17;
 /// Steps of each chain that are shown in a round, while anyone looks.
-const WINDOW: u64 = 16;
+const WINDOW: u64 = 32;
 /// Time between two reports of statistics.
 const STATISTICS_INTERVAL: Duration = Duration::from_millis(500);
 /// Shortest time between two snapshots of the film.
