@@ -1,0 +1,99 @@
+//! Collecting paths into batches, as keyframes and diffs.
+
+use super::{PathBatch, PathHeader, VertexRecord};
+
+/// How large a batch may grow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BatchLimits {
+    /// A batch is complete when it holds this many bytes.
+    pub bytes: usize,
+}
+
+impl Default for BatchLimits {
+    fn default() -> Self {
+        Self { bytes: 64 * 1024 }
+    }
+}
+
+/// A batch that [`BatchBuilder::push`] found complete, if any.
+pub type Completed = Option<PathBatch>;
+
+/// Collects paths into batches, as keyframes and diffs.
+#[derive(Debug, Default)]
+pub struct BatchBuilder {
+    limits: BatchLimits,
+    batch: PathBatch,
+    /// Vertex count of the last path pushed of each chain in the open batch.
+    last: Vec<(u32, usize)>,
+}
+
+impl BatchBuilder {
+    /// A builder of batches of about `limits` size.
+    pub fn new(limits: BatchLimits) -> Self {
+        Self { limits, ..Self::default() }
+    }
+
+    /// Adds a path of `vertices`.
+    ///
+    /// `kept` is the number of vertices that it shares, unchanged, with the path pushed before for
+    /// the same chain, from the light end and from the lens end; `None` where nothing is known to
+    /// be shared. Returns the previous batch when this path did not fit into it.
+    pub fn push(
+        &mut self,
+        header: &PathHeader,
+        vertices: &[VertexRecord],
+        kept: Option<(usize, usize)>,
+    ) -> Completed {
+        let completed =
+            if self.batch.byte_len() >= self.limits.bytes { self.finish() } else { None };
+        let chain = header.id.chain.0;
+        let slot = self.last.iter().position(|(known, _)| *known == chain);
+        let (light, eye) = match (slot, kept) {
+            (Some(_), Some(kept)) => kept,
+            _ => (0, 0),
+        };
+        match slot {
+            Some(slot) => self.last[slot].1 = vertices.len(),
+            None => self.last.push((chain, vertices.len())),
+        }
+        self.push_header(header, (light, eye), vertices.len() - light - eye);
+        for vertex in &vertices[light..vertices.len() - eye] {
+            self.push_vertex(vertex);
+        }
+        completed
+    }
+
+    /// The open batch, if it holds anything.
+    pub fn finish(&mut self) -> Completed {
+        self.last.clear();
+        let batch = std::mem::take(&mut self.batch);
+        (!batch.is_empty()).then_some(batch)
+    }
+
+    fn push_header(&mut self, header: &PathHeader, kept: (usize, usize), inserted: usize) {
+        let p = &mut self.batch.paths;
+        p.chain.push(header.id.chain.0);
+        p.epoch.push(header.id.epoch);
+        p.step.push(header.id.step);
+        p.strategy.push(header.strategy.0);
+        p.kept_light.push(kept.0 as u8);
+        p.kept_eye.push(kept.1 as u8);
+        p.inserted.push(inserted as u8);
+        p.dwell.push(header.dwell);
+        p.weight.push(header.weight);
+        p.acceptance.push(header.acceptance);
+        p.film.push(header.film);
+        p.luminance.push(header.luminance);
+        p.rgb.push(header.rgb);
+    }
+
+    fn push_vertex(&mut self, vertex: &VertexRecord) {
+        let v = &mut self.batch.vertices;
+        v.position.push(vertex.position);
+        v.normal.push(vertex.normal);
+        v.kind.push(vertex.kind as u8);
+        v.event.push(vertex.event as u8);
+        v.material.push(vertex.material);
+        v.primitive.push(vertex.primitive);
+    }
+}
