@@ -52,13 +52,16 @@ fn main() -> anyhow::Result<()> {
 
 /// The mixture as it is used, and each strategy nearly alone: the independent mutation stays in at
 /// one per cent, so that no chain is confined to where it starts.
-fn mixtures() -> [(&'static str, StrategyWeights); 4] {
-    let alone = StrategyWeights { bidirectional: 0.0, independent: 0.01, lens: 0.0 };
+fn mixtures() -> [(&'static str, StrategyWeights); 7] {
+    let alone = StrategyWeights { independent: 0.01, ..StrategyWeights::NONE };
     [
         ("all", StrategyWeights::default()),
         ("bidirectional", StrategyWeights { bidirectional: 0.99, ..alone }),
         ("independent", alone),
         ("lens", StrategyWeights { lens: 0.99, ..alone }),
+        ("lens subpath", StrategyWeights { lens_subpath: 0.99, ..alone }),
+        ("caustic", StrategyWeights { caustic: 0.99, ..alone }),
+        ("multi-chain", StrategyWeights { multi_chain: 0.99, ..alone }),
     ]
 }
 

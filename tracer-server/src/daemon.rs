@@ -11,6 +11,7 @@ use tokio_util::sync::CancellationToken;
 use crate::chain::EnsembleSettings;
 use crate::engine::Engine;
 use crate::hub::HubLimits;
+use crate::mutation::Mixture;
 use crate::path::Failure;
 use crate::scene::Scene;
 use crate::service::{Server, SessionInfo, StartError};
@@ -95,7 +96,7 @@ fn session_info(scene: &Scene, ensemble: &EnsembleSettings) -> SessionInfo {
         scene_hash: scene.hash().to_owned(),
         frame: scene.frame(),
         camera: *scene.camera(),
-        strategies: ensemble.weights.names(),
+        strategies: Mixture::names_for(&ensemble.weights, scene.camera(), scene.features()),
         failure_reasons: Failure::ALL.iter().map(|reason| reason.name().to_owned()).collect(),
         chains: ensemble.chains,
         max_edges: scene.max_edges() as u32,

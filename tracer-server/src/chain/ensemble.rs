@@ -6,7 +6,7 @@ use common::{ChainId, PathBatch};
 
 use super::{Bootstrap, BootstrapSettings, Chain, ChainStatistics, Watch};
 use crate::film::Film;
-use crate::mutation::{Mixture, StrategyWeights};
+use crate::mutation::{Mixture, MixtureBasis, StrategyWeights};
 use crate::parallel;
 use crate::scene::{Scene, Tracer};
 
@@ -76,8 +76,13 @@ impl Ensemble {
         };
         let bootstrap = Bootstrap::new(scene, &bootstrap_settings, on_progress);
         let camera = scene.camera();
-        let mixture =
-            Mixture::new(&settings.weights, camera, bootstrap.energy(), scene.max_edges());
+        let basis = MixtureBasis {
+            camera,
+            max_edges: scene.max_edges(),
+            features: scene.features(),
+            energy: bootstrap.energy(),
+        };
+        let mixture = Mixture::new(&settings.weights, &basis);
         let mut lanes: Vec<Lane> = (0..LANES)
             .map(|_| Lane {
                 film: Film::new(camera.width, camera.height),

@@ -4,9 +4,13 @@
 //! `strategy!`, and list it in [`Mixture`]. The laws in `laws.rs` then hold it to account.
 
 mod bidirectional;
+mod caustic;
 mod independent;
 mod lens;
+mod lens_subpath;
 mod mixture;
+mod multi_chain;
+mod retrace;
 
 #[cfg(test)]
 mod laws;
@@ -20,9 +24,13 @@ use crate::path::{Draft, Failure, Path};
 use crate::scene::Tracer;
 
 pub use bidirectional::{Bidirectional, Ends};
+pub use caustic::{CausticPerturbation, Turn};
 pub use independent::Independent;
 pub use lens::LensPerturbation;
-pub use mixture::{Mixture, StrategyWeights};
+pub use lens_subpath::LensSubpath;
+pub use mixture::{Mixture, MixtureBasis, StrategyWeights};
+pub use multi_chain::MultiChain;
+pub use retrace::Sizes;
 
 /// One way to mutate a path.
 ///
@@ -99,6 +107,12 @@ pub enum Strategy {
     Independent(Independent),
     /// Moves the film point a little.
     Lens(LensPerturbation),
+    /// Moves the film point anywhere.
+    LensSubpath(LensSubpath),
+    /// Turns the light a little.
+    Caustic(CausticPerturbation),
+    /// Moves the film point and every further chain a little.
+    MultiChain(MultiChain),
 }
 
 /// Does something with the strategy behind the variant: the only match on [`Strategy`].
@@ -108,6 +122,9 @@ macro_rules! strategy {
             Strategy::Bidirectional($mutation) => $call,
             Strategy::Independent($mutation) => $call,
             Strategy::Lens($mutation) => $call,
+            Strategy::LensSubpath($mutation) => $call,
+            Strategy::Caustic($mutation) => $call,
+            Strategy::MultiChain($mutation) => $call,
         }
     };
 }

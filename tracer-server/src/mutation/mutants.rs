@@ -2,9 +2,13 @@
 
 use glam::DVec2;
 
+use super::caustic::chain_pdf;
 use super::laws::Propose;
-use super::lens::event_probability;
-use super::{Bidirectional, Ends, Independent, LensPerturbation, Mutation, Proposal, propose};
+use super::retrace::{displace, from_lens, walk_pdf};
+use super::{
+    Bidirectional, CausticPerturbation, Ends, Independent, LensPerturbation, LensSubpath,
+    MultiChain, Mutation, Proposal, Sizes, propose,
+};
 use crate::math::Rng;
 use crate::path::{Draft, Failure, Path};
 use crate::scene::Tracer;
@@ -117,17 +121,24 @@ pub(super) fn of_lens<'a>(right: LensPerturbation) -> Vec<Mutant<'a>> {
         let cosine = v[k].normal.dot(-y.edges()[k - 1].direction);
         v[d].normal.dot(y.edges()[d].direction).abs() / (distance_squared * cosine.powi(3))
     }
-    let through =
-        |film: DVec2, (scene, x, _, draft, y): Args<'_, '_, '_>, right: &LensPerturbation| {
-            if !right.applicable(x) {
-                return Err(Failure::NoSubpath);
-            }
-            let d = LensPerturbation::retrace(scene, x, film, draft, y)?;
-            let ratio = right.transition(y, x, d) / right.transition(x, y, d);
-            Ok(Proposal { ratio, kept_light: d, kept_eye: 1 })
-        };
+    fn step(right: LensPerturbation, scene: &Tracer<'_>, x: &Path, rng: &mut Rng) -> DVec2 {
+        displace(scene.camera(), x.film(), right.radius.draw(rng), rng)
+    }
+    fn through(
+        film: DVec2,
+        (scene, x, _, draft, y): Args<'_, '_, '_>,
+        right: LensPerturbation,
+    ) -> Result<Proposal, Failure> {
+        if !right.applicable(x) {
+            return Err(Failure::NoSubpath);
+        }
+        let d = x.first_diffuse_from_eye();
+        from_lens(scene, x, (film, d), draft, y, |direction| direction)?;
+        let ratio = right.transition(y, x, d) / right.transition(x, y, d);
+        Ok(Proposal { ratio, kept_light: d, kept_eye: 1 })
+    }
     let mut events = mutant("lens: event probabilities divided out", move |args| {
-        misjudged(&right, args, |x, y, d| right.transition(x, y, d) * event_probability(y, d))
+        misjudged(&right, args, |x, y, d| right.transition(x, y, d) * walk_pdf(y, d))
     });
     events.needs_glass = true;
     vec![
@@ -135,18 +146,81 @@ pub(super) fn of_lens<'a>(right: LensPerturbation) -> Vec<Mutant<'a>> {
             misjudged(&right, args, |x, y, d| right.transition(x, y, d) / film_per_area(y, d))
         }),
         mutant("lens: film point clamped to the border", move |(scene, x, rng, draft, y)| {
-            let film = right.displace(x.film(), rng);
+            let film = step(right, scene, x, rng);
             let inside = film.clamp(DVec2::ZERO, DVec2::splat(1.0 - 1e-9));
-            through(inside, (scene, x, rng, draft, y), &right)
+            through(inside, (scene, x, rng, draft, y), right)
         }),
         mutant("lens: drawn again off the film", move |(scene, x, rng, draft, y)| {
-            let mut film = right.displace(x.film(), rng);
+            let mut film = step(right, scene, x, rng);
             while film.min_element() < 0.0 || film.max_element() >= 1.0 {
-                film = right.displace(x.film(), rng);
+                film = step(right, scene, x, rng);
             }
-            through(film, (scene, x, rng, draft, y), &right)
+            through(film, (scene, x, rng, draft, y), right)
         }),
         mutant("lens: drawn again after a failure", move |args| redrawn(&right, args)),
         events,
+    ]
+}
+
+pub(super) fn of_lens_subpath<'a>(right: LensSubpath) -> Vec<Mutant<'a>> {
+    /// Solid angle per film area at the lens, up to a constant.
+    fn solid_angle_per_film(y: &Path) -> f64 {
+        let k = y.edge_count();
+        (-y.vertices()[k].normal.dot(y.edges()[k - 1].direction)).powi(3)
+    }
+    vec![
+        mutant("lens subpath: event probabilities not divided out", move |args| {
+            misjudged(&right, args, |x, y, d| right.transition(x, y, d) / walk_pdf(y, d))
+        }),
+        mutant("lens subpath: in solid angle at the lens", move |args| {
+            misjudged(&right, args, |x, y, d| right.transition(x, y, d) * solid_angle_per_film(y))
+        }),
+    ]
+}
+
+pub(super) fn of_caustic<'a>(right: CausticPerturbation) -> Vec<Mutant<'a>> {
+    /// Cosine at the vertex whose direction is turned.
+    fn start_cosine(y: &Path, start: usize) -> f64 {
+        y.vertices()[start].normal.dot(y.edges()[start].direction).abs()
+    }
+    let wide = CausticPerturbation { radius: Sizes { max: 60.0, ..right.radius }, ..right };
+    vec![
+        mutant("caustic: no test of the range", move |args| {
+            misjudged(&right, args, |x, y, via| {
+                let k = y.edge_count();
+                y.reciprocal(k) / (chain_pdf(y, via.start) * right.angles(x, via.start).span())
+            })
+        }),
+        mutant("caustic: projected solid angle", move |args| {
+            misjudged(&wide, args, |x, y, via| {
+                wide.transition(x, y, via) * start_cosine(y, via.start)
+            })
+        }),
+        mutant("caustic: drawn again after a failure", move |args| redrawn(&right, args)),
+    ]
+}
+
+pub(super) fn of_multi_chain<'a>(right: MultiChain) -> Vec<Mutant<'a>> {
+    /// Product of the cosines at the starts of the chains after the first.
+    fn inner_cosines(y: &Path, end: usize) -> f64 {
+        let starts = (end + 1..y.edge_count()).filter(|&j| y.is_connectable(j));
+        let cosine = |j: usize| y.vertices()[j].normal.dot(y.edges()[j - 1].direction).abs();
+        starts.map(cosine).product()
+    }
+    /// Probability of the events along all chains.
+    fn events(y: &Path, end: usize) -> f64 {
+        let specular = (end + 1..y.edge_count()).filter(|&j| !y.is_connectable(j));
+        specular.map(|j| y.scattering(j).eye_pdf).product()
+    }
+    let mut divided = mutant("multi-chain: event probabilities divided out", move |args| {
+        misjudged(&right, args, |x, y, end| right.transition(x, y, end) * events(y, end))
+    });
+    divided.needs_glass = true;
+    vec![
+        divided,
+        mutant("multi-chain: inner cosine missing", move |args| {
+            misjudged(&right, args, |x, y, end| right.transition(x, y, end) * inner_cosines(y, end))
+        }),
+        mutant("multi-chain: drawn again after a failure", move |args| redrawn(&right, args)),
     ]
 }

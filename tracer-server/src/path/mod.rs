@@ -170,12 +170,18 @@ impl Path {
         self.connectable
     }
 
+    /// True when vertex `j` can be connected.
+    #[inline]
+    pub fn is_connectable(&self, j: usize) -> bool {
+        self.connectable >> j & 1 == 1
+    }
+
     /// Index of the first vertex, seen from the lens, that is not specular; zero for a light that
     /// is seen directly or through specular vertices only.
     #[inline]
     pub fn first_diffuse_from_eye(&self) -> usize {
         let last = self.edge_count() - 1;
-        (1..=last).rev().find(|&j| self.connectable >> j & 1 == 1).unwrap_or(0)
+        (1..=last).rev().find(|&j| self.is_connectable(j)).unwrap_or(0)
     }
 
     /// Heckbert's class, such as `LDSE`.

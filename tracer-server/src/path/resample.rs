@@ -29,10 +29,12 @@ pub struct Draft {
     pub light: Vertices,
     /// Vertices of a walk from the eye side.
     pub eye: Vertices,
+    /// Film displacements used so far by strategies that spread them evenly: a chain's own count.
+    pub displacements: u64,
 }
 
 impl Draft {
-    /// Empties both sides.
+    /// Empties both sides; the count goes on.
     pub fn clear(&mut self) {
         self.light.clear();
         self.eye.clear();

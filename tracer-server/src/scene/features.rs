@@ -35,7 +35,7 @@ impl SceneFeatures {
     pub fn switched_off(self) -> Vec<&'static str> {
         let mut off = Vec::new();
         if !self.specular {
-            off.push("no mirror or glass: every vertex can be connected, no event is repeated");
+            off.push("no mirror or glass: every vertex can be connected, and the multi-chain perturbation is off");
         }
         if !self.spheres {
             off.push("no analytic sphere: the sphere tree is never searched");

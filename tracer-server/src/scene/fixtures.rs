@@ -168,3 +168,33 @@ pub(crate) fn wall_in_a_pane() -> Fixture {
         .quad(WHITE, Rgb::BLACK, [-3., -0.5, -2.], [6., 0., 0.], [0., 4., 0.])
         .quad(BLACK, Rgb::grey(20.0), [-0.5, 3.0, -0.5], [1., 0., 0.], [0., 0., 1.])
 }
+
+/// A slab of dense glass between a wide lamp and a diffuse floor; the camera looks through the
+/// slab at many angles, or from below it.
+pub(crate) fn slab_over_floor(through: bool) -> Fixture {
+    let dense = BsdfDescription::Dielectric {
+        eta: 2.4,
+        reflectance: Rgb::WHITE,
+        transmittance: Rgb::WHITE,
+    };
+    let (origin, target) = if through {
+        (DVec3::new(0.3, 1.2, 1.6), DVec3::new(0.0, 0.5, 0.3))
+    } else {
+        (DVec3::new(0.3, 0.35, 1.0), DVec3::ZERO)
+    };
+    Fixture::new(origin, target, 60.0)
+        .quad(WHITE, Rgb::BLACK, [-2., 0., -2.], [0., 0., 4.], [4., 0., 0.])
+        .quad(dense, Rgb::BLACK, [-3., 0.9, -3.], [0., 0., 6.], [6., 0., 0.])
+        .quad(dense, Rgb::BLACK, [-3., 0.7, -3.], [6., 0., 0.], [0., 0., 6.])
+        .quad(BLACK, Rgb::new(6.0, 5.0, 3.0), [-2., 2.2, -2.], [4., 0., 0.], [0., 0., 4.])
+        .max_edges(8)
+}
+
+/// A wall that is mirrored, and lit by the mirror image of a wide lamp, in one pane of glass: both
+/// at many angles, so that the probabilities of reflection differ from path to path.
+pub(crate) fn wall_and_lamp_in_a_pane() -> Fixture {
+    Fixture::new(DVec3::new(0.0, 0.0, 1.5), DVec3::new(0.0, -0.5, 0.0), 80.0)
+        .quad(GLASS, Rgb::BLACK, [-3., -0.5, -2.], [0., 0., 6.], [6., 0., 0.])
+        .quad(WHITE, Rgb::BLACK, [-3., -0.5, -2.], [6., 0., 0.], [0., 2., 0.])
+        .quad(BLACK, Rgb::grey(20.0), [-3.0, 1.6, -1.9], [6., 0., 0.], [0., 0., 5.])
+}
