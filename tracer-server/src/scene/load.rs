@@ -123,13 +123,26 @@ fn read_obj(path: &Path) -> Result<Read, LoadError> {
     Ok(Read { description, origins, warnings: scene.warnings })
 }
 
+/// The first warnings as lines below an error: what went before often tells why.
+fn notes(warnings: &[Warning]) -> String {
+    const LISTED: usize = 4;
+    let mut notes: String =
+        warnings.iter().take(LISTED).map(|warning| format!("\n  note: {warning}")).collect();
+    if warnings.len() > LISTED {
+        notes.push_str(&format!("\n  and {} more", warnings.len() - LISTED));
+    }
+    notes
+}
+
 /// Validates what was read; problems and repairs are told with their place.
 fn check(read: Read) -> Result<Loaded, LoadError> {
     let Read { mut description, origins, mut warnings } = read;
     let names: Vec<String> = description.meshes.iter().map(|mesh| mesh.name.clone()).collect();
     let dropped = validate(&mut description).map_err(|problem| {
         let subject = subject_of(&description, &problem);
-        origins.of(problem.part, problem.field).error(format!("{subject}{}", problem.message))
+        let notes = notes(&warnings);
+        let message = format!("{subject}{}{notes}", problem.message);
+        origins.of(problem.part, problem.field).error(message)
     })?;
     for drop in dropped {
         let name = names.get(drop.mesh).map_or("", String::as_str);

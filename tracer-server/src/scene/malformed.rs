@@ -191,6 +191,8 @@ fn a_missing_library_or_texture_is_a_warning() {
         .map(|_| ())
         .expect_err("without materials there is no light");
     assert!(message.contains("a.obj: the scene has no light"), "{message}");
+    let cause = "a.obj:1: cannot read the material library";
+    assert!(message.contains(cause), "the error tells what led to it: {message}");
 
     let directory = tempfile::tempdir().expect("a directory");
     let write = |name: &str, text: &str| fs::write(directory.path().join(name), text);
