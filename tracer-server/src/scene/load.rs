@@ -126,12 +126,12 @@ fn read_obj(path: &Path) -> Result<Read, LoadError> {
 /// The first warnings as lines below an error: what went before often tells why.
 fn notes(warnings: &[Warning]) -> String {
     const LISTED: usize = 4;
-    let mut notes: String =
-        warnings.iter().take(LISTED).map(|warning| format!("\n  note: {warning}")).collect();
+    let note = |warning: &Warning| format!("\n  note: {warning}");
+    let mut notes: Vec<String> = warnings.iter().take(LISTED).map(note).collect();
     if warnings.len() > LISTED {
-        notes.push_str(&format!("\n  and {} more", warnings.len() - LISTED));
+        notes.push(format!("\n  and {} more", warnings.len() - LISTED));
     }
-    notes
+    notes.concat()
 }
 
 /// Validates what was read; problems and repairs are told with their place.
