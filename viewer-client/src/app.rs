@@ -167,6 +167,7 @@ impl Viewer {
             self.set_model(Model::new(scene.mesh));
         }
         if let Some(statistics) = delivery.statistics {
+            self.settings.image.suit(statistics.normalization);
             self.status.statistics(statistics);
         }
         for tile in delivery.film.values() {

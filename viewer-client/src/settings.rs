@@ -126,15 +126,28 @@ impl SceneSettings {
 pub struct ImageSettings {
     /// Brightness in stops.
     pub exposure: f32,
+    /// The user has chosen the brightness; otherwise it follows the scene.
+    pub chosen: bool,
     /// Screen points a film pixel, or as large as fits.
     pub zoom: Option<f32>,
 }
 
 impl ImageSettings {
+    /// Suits the brightness to an image of mean luminance `mean`, in half stops, unless the user
+    /// has chosen another.
+    pub fn suit(&mut self, mean: f64) {
+        const SHOWN_MEAN: f64 = 0.25;
+        let stops = ((SHOWN_MEAN / mean).log2() * 2.0).round() / 2.0;
+        if !self.chosen && stops.is_finite() {
+            self.exposure = stops.clamp(-20.0, 20.0) as f32;
+        }
+    }
+
     /// Follows a command.
     pub fn apply(&mut self, command: ImageCommand) {
         match command {
-            ImageCommand::Exposure(stops) => self.exposure = stops,
+            ImageCommand::Exposure(stops) => (self.exposure, self.chosen) = (stops, true),
+            ImageCommand::Auto => self.chosen = false,
             ImageCommand::Zoom(factor) => self.zoom = Some(factor),
             ImageCommand::Fit => self.zoom = None,
         }
@@ -173,5 +186,25 @@ impl Layout {
             LayoutCommand::Theme(ThemeName::Toggle) => self.dark = !self.dark,
             LayoutCommand::Help(switch) => switch.apply(&mut self.help),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn brightness_follows_the_scene_until_it_is_chosen() {
+        let mut image = ImageSettings::default();
+        image.suit(4.0);
+        assert_eq!(image.exposure, -4.0, "sixteen times too bright");
+        image.apply(ImageCommand::Exposure(1.0));
+        image.suit(4.0);
+        assert_eq!(image.exposure, 1.0, "the user's choice stays");
+        image.apply(ImageCommand::Auto);
+        image.suit(0.0);
+        assert_eq!(image.exposure, 1.0, "a black image tells nothing");
+        image.suit(0.25);
+        assert_eq!(image.exposure, 0.0, "and follows again when asked to");
     }
 }

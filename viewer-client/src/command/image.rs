@@ -10,6 +10,8 @@ use super::words::{CommandError, Words};
 pub enum ImageCommand {
     /// Brightness in stops: each doubles it.
     Exposure(f32),
+    /// Brightness that suits the scene.
+    Auto,
     /// Screen points a film pixel.
     Zoom(f32),
     /// As large as its panel.
@@ -18,6 +20,7 @@ pub enum ImageCommand {
 
 pub(super) const FORMS: &[Form] = &[
     ("image exposure STOPS", "brightness; each stop doubles it (-20 to 20)"),
+    ("image auto", "brightness that suits the scene"),
     ("image zoom FACTOR", "screen points a film pixel"),
     ("image fit", "as large as its panel"),
 ];
@@ -26,6 +29,7 @@ impl fmt::Display for ImageCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Exposure(stops) => write!(f, "exposure {stops}"),
+            Self::Auto => write!(f, "auto"),
             Self::Zoom(factor) => write!(f, "zoom {factor}"),
             Self::Fit => write!(f, "fit"),
         }
@@ -35,6 +39,7 @@ impl fmt::Display for ImageCommand {
 pub(super) fn parse(words: &mut Words<'_>) -> Result<ImageCommand, CommandError> {
     Ok(match words.next("image command")? {
         "exposure" => ImageCommand::Exposure(words.number("STOPS", -20.0..=20.0)?),
+        "auto" => ImageCommand::Auto,
         "zoom" => ImageCommand::Zoom(words.number("FACTOR", 0.05..=32.0)?),
         "fit" => ImageCommand::Fit,
         other => return Err(CommandError::Unknown(format!("image {other}"))),

@@ -104,7 +104,7 @@ mod tests {
         cloud dots 1.5\n\
         scene shading wireframe\nscene opacity 0.25\nscene cutaway off\nscene camera on\n\
         scene grid toggle\n\
-        image exposure -1.5\nimage zoom 2\nimage fit\n\
+        image exposure -1.5\nimage auto\nimage zoom 2\nimage fit\n\
         panel statistics off\ntheme light\nhelp toggle\n\
         reconnect\nquit";
 

@@ -143,8 +143,11 @@ fn zoom(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
                 commands.push(Command::Image(ImageCommand::Zoom(factor)));
             }
         }
-        if world.settings.image.exposure != 0.0 && ui.button("Reset exposure").clicked() {
-            commands.push(Command::Image(ImageCommand::Exposure(0.0)));
+        let auto = ui
+            .selectable_label(!world.settings.image.chosen, "Auto")
+            .on_hover_text("Brightness that suits the scene");
+        if auto.clicked() {
+            commands.push(Command::Image(ImageCommand::Auto));
         }
     });
 }
