@@ -22,7 +22,7 @@ pub use vertex::Vertex;
 pub use walk::{camera_vertex, emit, extend, light_vertex, scatter};
 
 use arrayvec::ArrayVec;
-use common::{Rgb, VertexKind};
+use common::Rgb;
 use glam::{DVec2, DVec3};
 
 use crate::bsdf::Scattering;
@@ -187,11 +187,6 @@ impl Path {
     /// Heckbert's class, such as `LDSE`.
     pub fn class(&self) -> String {
         self.vertices.iter().map(|v| v.kind.letter()).collect()
-    }
-
-    /// True when some vertex is specular.
-    pub fn has_specular(&self) -> bool {
-        self.vertices.iter().any(|v| v.kind == VertexKind::Specular)
     }
 }
 

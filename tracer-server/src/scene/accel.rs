@@ -82,10 +82,6 @@ impl Accel {
         &self.balls
     }
 
-    pub(crate) fn primitive_count(&self) -> usize {
-        self.triangles.len() + self.balls.len()
-    }
-
     fn ball_index(&self, primitive: u32) -> Option<usize> {
         let index = (primitive as usize).checked_sub(self.triangles.len())?;
         (index < self.balls.len()).then_some(index)

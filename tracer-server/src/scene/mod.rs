@@ -30,10 +30,10 @@ mod tracer;
 mod validate;
 mod viewpoint;
 
-use common::{Camera, Event, Rgb, SceneFrame};
+use common::{Camera, Rgb, SceneFrame};
 use glam::DVec3;
 
-use crate::bsdf::{Bsdf, Scatter as _};
+use crate::bsdf::Bsdf;
 use crate::math::Rng;
 use accel::Accel;
 use emitter::Emitters;
@@ -145,21 +145,6 @@ impl Scene {
         &self.warnings
     }
 
-    /// Number of triangles traced.
-    pub fn triangle_count(&self) -> usize {
-        self.accel.triangles().len()
-    }
-
-    /// Number of primitives traced, spheres included.
-    pub fn primitive_count(&self) -> usize {
-        self.accel.primitive_count()
-    }
-
-    /// Number of emitting primitives.
-    pub fn emitter_count(&self) -> usize {
-        self.emitters.list().len()
-    }
-
     /// The nearest surface seen from `from` in the unit `direction`.
     #[inline]
     pub fn closest(&self, from: &Anchor, direction: DVec3) -> Option<Hit> {
@@ -189,12 +174,6 @@ impl Scene {
     #[inline]
     pub fn bsdf(&self, material: u16) -> &Bsdf {
         &self.surfaces[usize::from(material)].bsdf
-    }
-
-    /// The event with which a vertex on `material` can be joined by an explicit connection.
-    #[inline]
-    pub fn connectable(&self, material: u16) -> Option<Event> {
-        self.bsdf(material).connectable()
     }
 
     /// What a primitive emits; `None` where it is no light.
