@@ -9,7 +9,7 @@ use crate::chain::{ChainStatistics, Ensemble, EnsembleSettings};
 use crate::film::Film;
 use crate::integrator::{BidirectionalTracer, PathTracer};
 use crate::path::Failure;
-use crate::scene::Scene;
+use crate::scene::{RayCounts, Scene};
 
 /// How an image is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -302,7 +302,7 @@ impl Work {
     }
 }
 
-fn ray_report((rays, shadow_rays): (u64, u64)) -> Report {
+fn ray_report(RayCounts { rays, shadow_rays }: RayCounts) -> Report {
     Report { rays, shadow_rays, ..Report::default() }
 }
 

@@ -8,7 +8,7 @@ use super::{Bootstrap, BootstrapSettings, Chain, ChainStatistics, Watch};
 use crate::film::Film;
 use crate::mutation::{Mixture, MixtureBasis, StrategyWeights};
 use crate::parallel;
-use crate::scene::{Scene, Tracer};
+use crate::scene::{RayCounts, Scene, Tracer};
 
 /// Films that chains are spread over.
 ///
@@ -58,8 +58,7 @@ pub struct Ensemble {
 struct Lane {
     film: Film,
     chains: Vec<Chain>,
-    rays: u64,
-    shadow_rays: u64,
+    rays: RayCounts,
 }
 
 impl Ensemble {
@@ -87,8 +86,7 @@ impl Ensemble {
             .map(|_| Lane {
                 film: Film::new(camera.width, camera.height),
                 chains: Vec::new(),
-                rays: 0,
-                shadow_rays: 0,
+                rays: RayCounts::default(),
             })
             .collect();
         let seeds = bootstrap.seeds(scene, settings.chains);
@@ -167,8 +165,8 @@ impl Ensemble {
         let mut sum = ChainStatistics::new(self.mixture.len());
         for lane in &self.lanes {
             lane.chains.iter().for_each(|chain| sum.add(chain.statistics()));
-            sum.rays += lane.rays;
-            sum.shadow_rays += lane.shadow_rays;
+            sum.rays += lane.rays.rays;
+            sum.shadow_rays += lane.rays.shadow_rays;
         }
         sum
     }
@@ -199,8 +197,7 @@ impl Lane {
             }
             chain.flush(&mut self.film);
         }
-        self.rays += scene.rays();
-        self.shadow_rays += scene.shadow_rays();
+        self.rays.add(&scene);
         watch.map_or_else(Vec::new, Watch::finish)
     }
 }

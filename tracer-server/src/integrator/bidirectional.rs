@@ -7,7 +7,7 @@ use crate::film::Film;
 use crate::math::{Rng, Stream};
 use crate::parallel;
 use crate::path::BidirectionalSampler;
-use crate::scene::{Scene, Tracer};
+use crate::scene::{RayCounts, Scene, Tracer};
 
 /// Renders by bidirectional path tracing, pass by pass.
 #[derive(Debug)]
@@ -15,7 +15,7 @@ pub struct BidirectionalTracer {
     lanes: Vec<Film>,
     seed: u64,
     samples: u64,
-    rays: (u64, u64),
+    rays: RayCounts,
 }
 
 impl BidirectionalTracer {
@@ -26,7 +26,7 @@ impl BidirectionalTracer {
             lanes: vec![Film::new(camera.width, camera.height); LANES],
             seed,
             samples: 0,
-            rays: (0, 0),
+            rays: RayCounts::default(),
         }
     }
 
@@ -45,8 +45,7 @@ impl BidirectionalTracer {
             },
         );
         for worker in workers {
-            self.rays.0 += worker.rays();
-            self.rays.1 += worker.shadow_rays();
+            self.rays.add(&worker);
         }
         self.samples += samples;
     }
@@ -56,8 +55,8 @@ impl BidirectionalTracer {
         self.samples
     }
 
-    /// Closest-hit rays and shadow rays so far.
-    pub fn rays(&self) -> (u64, u64) {
+    /// Rays cast so far.
+    pub fn rays(&self) -> RayCounts {
         self.rays
     }
 

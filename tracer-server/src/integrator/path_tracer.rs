@@ -11,7 +11,7 @@ use crate::film::Film;
 use crate::math::{Rng, Stream};
 use crate::parallel;
 use crate::path::{Vertex, camera_vertex, extend, light_vertex, scatter};
-use crate::scene::{Scene, Tracer};
+use crate::scene::{RayCounts, Scene, Tracer};
 
 /// Edges that every path gets before Russian roulette begins.
 const SURE_EDGES: usize = 4;
@@ -23,7 +23,7 @@ pub struct PathTracer {
     /// One stream a pixel, so that the image does not depend on the number of threads.
     streams: Vec<Rng>,
     samples: u64,
-    rays: (u64, u64),
+    rays: RayCounts,
 }
 
 /// The balance heuristic for two techniques that each draw one sample.
@@ -40,7 +40,7 @@ impl PathTracer {
             film: Film::new(camera.width, camera.height),
             streams: (0..pixels).map(|i| Rng::new(seed, Stream::PathTracer, i)).collect(),
             samples: 0,
-            rays: (0, 0),
+            rays: RayCounts::default(),
         }
     }
 
@@ -61,8 +61,7 @@ impl PathTracer {
             },
         );
         for worker in workers {
-            self.rays.0 += worker.rays();
-            self.rays.1 += worker.shadow_rays();
+            self.rays.add(&worker);
         }
         self.samples += samples;
     }
@@ -72,8 +71,8 @@ impl PathTracer {
         self.samples
     }
 
-    /// Closest-hit rays and shadow rays so far.
-    pub fn rays(&self) -> (u64, u64) {
+    /// Rays cast so far.
+    pub fn rays(&self) -> RayCounts {
         self.rays
     }
 

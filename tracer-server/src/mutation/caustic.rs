@@ -105,10 +105,7 @@ impl Mutation for CausticPerturbation {
             kept_from: k,
             film: None,
         };
-        y.splice(scene, &splice)?;
-        if !y.connection_is_clear(scene, k - 1) {
-            return Err(Failure::Occluded);
-        }
+        y.connect(scene, &splice)?;
         Ok(Turn { start, theta })
     }
 

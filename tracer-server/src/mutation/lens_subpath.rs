@@ -84,10 +84,7 @@ impl Mutation for LensSubpath {
             kept_from: x.edge_count(),
             film: Some(film),
         };
-        y.splice(scene, &splice)?;
-        if !y.connection_is_clear(scene, d - 1) {
-            return Err(Failure::Occluded);
-        }
+        y.connect(scene, &splice)?;
         Ok(d)
     }
 

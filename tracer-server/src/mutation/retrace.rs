@@ -113,11 +113,7 @@ pub(super) fn from_lens(
         kept_from: x.edge_count(),
         film: Some(film),
     };
-    y.splice(scene, &splice)?;
-    if end > 0 && !y.connection_is_clear(scene, end - 1) {
-        return Err(Failure::Occluded);
-    }
-    Ok(())
+    y.connect(scene, &splice)
 }
 
 /// Density of the directions and probability of the events that a walk from the lens to vertex

@@ -38,8 +38,7 @@ impl Path {
 
     /// Becomes the path that `splice` describes and computes its cached values.
     ///
-    /// Fails when the path carries no light. Visibility is not tested: ask
-    /// [`Path::connection_is_clear`] about the one edge that no ray has traced.
+    /// Fails when the path carries no light. Visibility is not tested; see [`Path::connect`].
     pub fn splice(&mut self, scene: &Tracer<'_>, splice: &Splice<'_>) -> Result<(), Failure> {
         let base = splice.base;
         let first_kept = splice.kept_light + splice.light.len() + splice.eye.len();
@@ -79,10 +78,21 @@ impl Path {
         self.weigh(scene)
     }
 
+    /// Splices, and tests the one edge that no ray has traced: the one from the light side to the
+    /// eye side. Without a light side the walk from the eye has hit the light, and there is none.
+    pub fn connect(&mut self, scene: &Tracer<'_>, splice: &Splice<'_>) -> Result<(), Failure> {
+        self.splice(scene, splice)?;
+        let last_light = (splice.kept_light + splice.light.len()).checked_sub(1);
+        match last_light {
+            Some(j) if !self.connection_is_clear(scene, j) => Err(Failure::Occluded),
+            _ => Ok(()),
+        }
+    }
+
     /// True when nothing blocks the edge from vertex `j` to its successor, and it is long enough
     /// for that to mean anything.
     #[inline]
-    pub fn connection_is_clear(&self, scene: &Tracer<'_>, j: usize) -> bool {
+    fn connection_is_clear(&self, scene: &Tracer<'_>, j: usize) -> bool {
         let (a, b) = (&self.vertices[j], &self.vertices[j + 1]);
         let reach = scene.reach(a.primitive, b.primitive);
         (b.position - a.position).length_squared() > reach * reach

@@ -168,7 +168,7 @@ impl BidirectionalSampler {
                 kept_from: 0,
                 film: drawn,
             };
-            if path.splice(scene, &splice).is_ok() && path.connection_is_clear(scene, light - 1) {
+            if path.connect(scene, &splice).is_ok() {
                 let survival = eye_survival * light_walk.survival[light - 1];
                 visit(path, 1.0 / (path.density_sum() * survival));
             }

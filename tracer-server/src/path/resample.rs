@@ -66,22 +66,15 @@ pub fn resample(
         let end = draft.eye.last_mut().ok_or(Failure::NoSubpath)?;
         end_on_light(scene, end)?;
     }
-    y.splice(
-        scene,
-        &Splice {
-            base: x,
-            kept_light: range.kept_light,
-            light: &draft.light,
-            eye: &draft.eye,
-            kept_from: range.kept_from,
-            film,
-        },
-    )?;
-    let last_light = range.kept_light + range.from_light;
-    if connected && !y.connection_is_clear(scene, last_light - 1) {
-        return Err(Failure::Occluded);
-    }
-    Ok(())
+    let splice = Splice {
+        base: x,
+        kept_light: range.kept_light,
+        light: &draft.light,
+        eye: &draft.eye,
+        kept_from: range.kept_from,
+        film,
+    };
+    y.connect(scene, &splice)
 }
 
 /// Lets the end of a walk take part in an explicit connection.

@@ -60,7 +60,7 @@ impl Scene {
         camera.origin = frame.to_scene(camera.origin);
 
         let mut warnings = Vec::new();
-        let (mut triangles, mut materials) = gather_triangles(description, frame, &mut warnings)?;
+        let (triangles, mut materials) = gather_triangles(description, frame, &mut warnings)?;
         let balls = gather_balls(description, frame, &mut materials)?;
         if materials.is_empty() {
             return Err(SceneError::Empty);
@@ -70,15 +70,20 @@ impl Scene {
         if !materials.iter().any(|&m| emits(m)) {
             return Err(SceneError::NoLight);
         }
-        let mut accel = Accel::new(triangles.clone(), balls.clone());
-        let lifted = lift_buried_lights(&accel, &mut triangles, |i| emits(materials[i]));
-        if lifted > 0 {
+        let mut accel = Accel::new(triangles, balls);
+        let lifted = lifted_lights(&accel, |i| emits(materials[i]));
+        if !lifted.is_empty() {
             warnings.push(format!(
-                "{lifted} light triangles lie in the plane of another surface; they were moved \
+                "{} light triangles lie in the plane of another surface; they were moved \
                  {:e} units to their front",
+                lifted.len(),
                 LIGHT_LIFT / frame.scale
             ));
-            accel = Accel::new(triangles, balls);
+            let mut triangles = accel.triangles().to_vec();
+            for (i, moved) in lifted {
+                triangles[i] = moved;
+            }
+            accel = Accel::new(triangles, accel.balls().to_vec());
         }
         let (emitters, primitives, radiance_scale) = light_up(description, &accel, &materials);
         let surfaces =
@@ -132,9 +137,13 @@ fn normalising_frame(description: &SceneDescription) -> Result<SceneFrame, Scene
     if !(extent > 0.0) || !extent.is_finite() {
         return Err(SceneError::Empty);
     }
-    // The exponent is read from the bits: a logarithm could round up at a power of two.
-    let exponent = ((extent.to_bits() >> 52) & 0x7ff) as i32 - 1023;
-    Ok(SceneFrame { centre: 0.5 * (low + high), scale: 2_f64.powi(10 - exponent) })
+    Ok(SceneFrame { centre: 0.5 * (low + high), scale: 2_f64.powi(10 - exponent(extent)) })
+}
+
+/// The exponent of the power of two just below a positive number. Read from the bits, since a
+/// logarithm could round up at a power of two.
+fn exponent(x: f64) -> i32 {
+    ((x.to_bits() >> 52) & 0x7ff) as i32 - 1023
 }
 
 fn gather_triangles(
@@ -190,15 +199,10 @@ fn gather_balls(
     Ok(balls)
 }
 
-/// Moves light triangles that coincide with another surface to their front: which of two coplanar
-/// faces a ray meets first is noise. Returns how many were moved.
-fn lift_buried_lights(
-    accel: &Accel,
-    triangles: &mut [Triangle],
-    is_light: impl Fn(usize) -> bool,
-) -> usize {
-    let mut lifted = 0;
-    for (i, triangle) in triangles.iter_mut().enumerate().filter(|(i, _)| is_light(*i)) {
+/// Light triangles that coincide with another surface, each moved to its front: which of two
+/// coplanar faces a ray meets first is noise. With their indices.
+fn lifted_lights(accel: &Accel, is_light: impl Fn(usize) -> bool) -> Vec<(usize, Triangle)> {
+    let lift = |(i, triangle): (usize, &Triangle)| {
         let middle = triangle.sample(4.0 / 9.0, 0.5);
         let span = 0.5 * LIGHT_LIFT * triangle.normal;
         let beside = |offset: DVec3, primitive: u32| Anchor {
@@ -207,18 +211,16 @@ fn lift_buried_lights(
             primitive,
         };
         // A ray through the light's own plane; the light itself does not count.
-        let buried = !accel.visible(&beside(span, NO_PRIMITIVE), &beside(-span, i as u32));
-        if buried {
-            let moved = triangle
-                .corners()
-                .map(|corner| (corner + LIGHT_LIFT * triangle.normal).as_vec3().as_dvec3());
-            if let Some(moved) = Triangle::new(moved) {
-                *triangle = moved;
-                lifted += 1;
-            }
+        if accel.visible(&beside(span, NO_PRIMITIVE), &beside(-span, i as u32)) {
+            return None;
         }
-    }
-    lifted
+        let moved = triangle
+            .corners()
+            .map(|corner| (corner + LIGHT_LIFT * triangle.normal).as_vec3().as_dvec3());
+        Some((i, Triangle::new(moved)?))
+    };
+    let triangles = accel.triangles().iter().enumerate();
+    triangles.filter(|(i, _)| is_light(*i)).filter_map(lift).collect()
 }
 
 /// Emitters, the table of primitives, and the power of two that emission is divided by.
@@ -241,8 +243,7 @@ fn light_up(
         primitives.push(Primitive { material, emitter });
     }
     let power: f64 = sources.iter().map(|&(_, radiance, area)| radiance.luminance() * area).sum();
-    let exponent = ((power.to_bits() >> 52) & 0x7ff) as i32 - 1023;
-    let radiance_scale = 2_f64.powi(exponent.clamp(-1000, 1000));
+    let radiance_scale = 2_f64.powi(exponent(power).clamp(-1000, 1000));
     for (_, radiance, _) in &mut sources {
         *radiance = *radiance / radiance_scale;
     }

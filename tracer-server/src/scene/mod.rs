@@ -43,7 +43,7 @@ pub use build::SceneError;
 pub use description::{BsdfDescription, Material, Mesh, SceneDescription, Sphere};
 pub use features::SceneFeatures;
 pub use surface::NO_PRIMITIVE;
-pub use tracer::Tracer;
+pub use tracer::{RayCounts, Tracer};
 
 /// Longest path that any scene may ask for, in edges.
 pub const MAX_EDGES: usize = 64;

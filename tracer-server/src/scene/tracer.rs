@@ -7,6 +7,23 @@ use glam::DVec3;
 
 use super::{Anchor, Hit, Scene};
 
+/// How many rays of each sort were cast.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RayCounts {
+    /// Closest-hit rays.
+    pub rays: u64,
+    /// Shadow rays.
+    pub shadow_rays: u64,
+}
+
+impl RayCounts {
+    /// Adds what a worker has cast.
+    pub fn add(&mut self, worker: &Tracer<'_>) {
+        self.rays += worker.rays.get();
+        self.shadow_rays += worker.shadow_rays.get();
+    }
+}
+
 /// A scene as one worker sees it: the same world, with a count of the rays the worker has cast.
 #[derive(Debug)]
 pub struct Tracer<'s> {
@@ -33,16 +50,6 @@ impl<'s> Tracer<'s> {
     pub fn visible(&self, a: &Anchor, b: &Anchor) -> bool {
         self.shadow_rays.set(self.shadow_rays.get() + 1);
         self.scene.visible(a, b)
-    }
-
-    /// Closest-hit rays cast so far.
-    pub fn rays(&self) -> u64 {
-        self.rays.get()
-    }
-
-    /// Shadow rays cast so far.
-    pub fn shadow_rays(&self) -> u64 {
-        self.shadow_rays.get()
     }
 }
 
