@@ -13,7 +13,7 @@ use comfy_table::presets::UTF8_FULL_CONDENSED;
 use glam::DVec2;
 use tracer_server::chain::{Ensemble, EnsembleSettings};
 use tracer_server::math::{Rng, Stream};
-use tracer_server::mutation::StrategyWeights;
+use tracer_server::mutation::{KINDS, OptionError, StrategyOptions};
 use tracer_server::path::{BidirectionalSampler, Vertex};
 use tracer_server::scene::load::load;
 use tracer_server::scene::{Scene, Tracer};
@@ -42,8 +42,8 @@ fn main() -> anyhow::Result<()> {
     for name in &scenes {
         let scene = Scene::new(&load(name)?.description)?;
         let limits = ray_rates(&scene);
-        for (strategies, weights) in mixtures() {
-            table.add_row(measure(&scene, strategies, weights, limits));
+        for (strategies, options) in mixtures()? {
+            table.add_row(measure(&scene, strategies, &options, limits));
         }
     }
     writeln!(io::stdout().lock(), "{}", table.trim_fmt())?;
@@ -52,27 +52,30 @@ fn main() -> anyhow::Result<()> {
 
 /// The mixture as it is used, and each strategy nearly alone: the independent mutation stays in at
 /// one per cent, so that no chain is confined to where it starts.
-fn mixtures() -> [(&'static str, StrategyWeights); 7] {
-    let alone = StrategyWeights { independent: 0.01, ..StrategyWeights::NONE };
-    [
-        ("all", StrategyWeights::default()),
-        ("bidirectional", StrategyWeights { bidirectional: 0.99, ..alone }),
-        ("independent", alone),
-        ("lens", StrategyWeights { lens: 0.99, ..alone }),
-        ("lens subpath", StrategyWeights { lens_subpath: 0.99, ..alone }),
-        ("caustic", StrategyWeights { caustic: 0.99, ..alone }),
-        ("multi-chain", StrategyWeights { multi_chain: 0.99, ..alone }),
-    ]
+fn mixtures() -> Result<Vec<(&'static str, StrategyOptions)>, OptionError> {
+    let mut mixtures = vec![("all", StrategyOptions::default())];
+    for kind in KINDS {
+        let mut alone = StrategyOptions::default();
+        let list = [("independent".to_owned(), Some(0.01)), (kind.key(), Some(0.99))];
+        alone.restrict(&list)?;
+        mixtures.push((kind.name, alone));
+    }
+    Ok(mixtures)
 }
 
 fn measure(
     scene: &Scene,
     strategies: &str,
-    weights: StrategyWeights,
+    options: &StrategyOptions,
     (closest, shadow): (f64, f64),
 ) -> Vec<String> {
-    let settings =
-        EnsembleSettings { seed: 1, chains: 16, threads: 1, weights, bootstrap_samples: 1 << 16 };
+    let settings = EnsembleSettings {
+        seed: 1,
+        chains: 16,
+        threads: 1,
+        strategies: *options,
+        bootstrap_samples: 1 << 16,
+    };
     let mut ensemble = Ensemble::new(scene, &settings, |_| ());
     ensemble.advance(scene, STEPS, None);
     let before = ensemble.statistics();

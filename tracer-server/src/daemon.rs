@@ -67,7 +67,7 @@ impl Daemon {
     pub fn start(scene: Arc<Scene>, options: &DaemonOptions) -> Result<Self, DaemonError> {
         let info = session_info(&scene, &options.ensemble);
         let server = Server::start(options.listen, info, options.limits)?;
-        let engine = Engine::start(scene, options.ensemble, server.hub().clone())
+        let engine = Engine::start(scene, &options.ensemble, server.hub().clone())
             .map_err(DaemonError::Engine)?;
         Ok(Self { server, _engine: engine })
     }
@@ -96,7 +96,7 @@ fn session_info(scene: &Scene, ensemble: &EnsembleSettings) -> SessionInfo {
         scene_hash: scene.hash().to_owned(),
         frame: scene.frame(),
         camera: *scene.camera(),
-        strategies: Mixture::names_for(&ensemble.weights, scene.camera(), scene.features()),
+        strategies: Mixture::names_for(&ensemble.strategies, scene.camera(), scene.features()),
         failure_reasons: Failure::ALL.iter().map(|reason| reason.name().to_owned()).collect(),
         chains: ensemble.chains,
         max_edges: scene.max_edges() as u32,

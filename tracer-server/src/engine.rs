@@ -34,9 +34,9 @@ pub struct Engine {
 
 impl Engine {
     /// Starts the chains of `scene` and publishes what they do.
-    pub fn start(scene: Arc<Scene>, settings: EnsembleSettings, hub: Hub) -> io::Result<Self> {
+    pub fn start(scene: Arc<Scene>, settings: &EnsembleSettings, hub: Hub) -> io::Result<Self> {
         let stop = Arc::new(AtomicBool::new(false));
-        let stopped = Arc::clone(&stop);
+        let (settings, stopped) = (*settings, Arc::clone(&stop));
         let thread = thread::Builder::new()
             .name("lvis-engine".to_owned())
             .spawn(move || run(&scene, &settings, &hub, &stopped))?;

@@ -4,6 +4,8 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::Arc;
 
 use anyhow::Context as _;
+use tracer_server::chain::EnsembleSettings;
+use tracer_server::cli::chains::of_scene;
 use tracer_server::daemon::{Daemon, DaemonOptions};
 use tracer_server::scene::Scene;
 use tracer_server::scene::load::load;
@@ -23,6 +25,10 @@ pub fn start(scene: &str) -> anyhow::Result<Daemon> {
     }
     let options = DaemonOptions {
         listen: SocketAddr::from((Ipv4Addr::LOCALHOST, 0)),
+        ensemble: EnsembleSettings {
+            strategies: of_scene(&loaded.strategies)?,
+            ..EnsembleSettings::default()
+        },
         ..DaemonOptions::default()
     };
     Daemon::start(Arc::new(scene), &options).context("cannot start a daemon in this program")

@@ -6,7 +6,7 @@ use common::{ChainId, PathBatch};
 
 use super::{Bootstrap, BootstrapSettings, Chain, ChainStatistics, Watch};
 use crate::film::Film;
-use crate::mutation::{Mixture, MixtureBasis, StrategyWeights};
+use crate::mutation::{Mixture, MixtureBasis, StrategyOptions};
 use crate::parallel;
 use crate::scene::{RayCounts, Scene, Tracer};
 
@@ -26,8 +26,8 @@ pub struct EnsembleSettings {
     pub chains: u32,
     /// Worker threads; the image does not depend on it.
     pub threads: usize,
-    /// How often each strategy is chosen.
-    pub weights: StrategyWeights,
+    /// What the user wants of the strategies.
+    pub strategies: StrategyOptions,
     /// Samples drawn at most for the normalisation and the seeds.
     pub bootstrap_samples: u64,
 }
@@ -38,7 +38,7 @@ impl Default for EnsembleSettings {
             seed: 0,
             chains: 128,
             threads: thread::available_parallelism().map_or(1, Into::into),
-            weights: StrategyWeights::default(),
+            strategies: StrategyOptions::default(),
             bootstrap_samples: 1 << 19,
         }
     }
@@ -81,7 +81,7 @@ impl Ensemble {
             features: scene.features(),
             energy: bootstrap.energy(),
         };
-        let mixture = Mixture::new(&settings.weights, &basis);
+        let mixture = Mixture::new(&settings.strategies, &basis);
         let mut lanes: Vec<Lane> = (0..LANES)
             .map(|_| Lane {
                 film: Film::new(camera.width, camera.height),

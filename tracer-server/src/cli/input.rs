@@ -2,8 +2,8 @@
 
 use clap::Args;
 
-use crate::scene::Scene;
 use crate::scene::load::load;
+use crate::scene::{Scene, StrategySetting};
 
 /// Largest side of a film that may be asked for, in pixels.
 const MAX_SIDE: i64 = 16_384;
@@ -21,8 +21,9 @@ pub struct FilmSize {
     pub height: Option<u32>,
 }
 
-/// Loads what the user named, and logs what it asks for in vain.
-pub(super) fn scene(spec: &str, size: FilmSize) -> anyhow::Result<Scene> {
+/// Loads what the user named, and logs what it asks for in vain; also returns what its file asks of
+/// the mutation strategies.
+pub(super) fn scene(spec: &str, size: FilmSize) -> anyhow::Result<(Scene, Vec<StrategySetting>)> {
     scene_with_depth(spec, size, None)
 }
 
@@ -31,7 +32,7 @@ pub(super) fn scene_with_depth(
     spec: &str,
     size: FilmSize,
     max_edges: Option<usize>,
-) -> anyhow::Result<Scene> {
+) -> anyhow::Result<(Scene, Vec<StrategySetting>)> {
     let mut loaded = load(spec)?;
     for warning in &loaded.warnings {
         tracing::warn!("{warning}");
@@ -46,5 +47,5 @@ pub(super) fn scene_with_depth(
     for warning in scene.warnings() {
         tracing::warn!("{warning}");
     }
-    Ok(scene)
+    Ok((scene, loaded.strategies))
 }

@@ -4,6 +4,7 @@
 //! [`Command`], and an arm of `Command::run`. Results go to stdout, logs to stderr. Exit codes: 0
 //! done, 1 a check failed, 2 bad usage or input.
 
+pub mod chains;
 pub mod info;
 pub mod input;
 mod inventory;

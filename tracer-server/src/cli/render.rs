@@ -13,8 +13,8 @@ use comfy_table::presets::UTF8_FULL_CONDENSED;
 use common::{mean_ratio, relative_mse};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::chains::ChainArgs;
 use super::input::{self, FilmSize};
-use crate::chain::EnsembleSettings;
 use crate::image_file;
 use crate::render::{Budget, Integrator, Progress, RenderSettings, Rendering, Report, render};
 use crate::scene::MAX_EDGES;
@@ -31,6 +31,7 @@ Examples:
   tracer-server render door -o door.png
   tracer-server render cornell -o cornell.exr --integrator bdpt --mutations-per-pixel 64
   tracer-server render caustic -o caustic.exr --time 30 --reference reference.exr
+  tracer-server render caustic -o plain.exr --without caustic,multi-chain --tune lens.radius=0.5..8
   tracer-server render scenes/room.toml -o room.exr --width 640 --height 480 --stats-json room.json")]
 pub struct RenderArgs {
     /// A built-in scene, a .toml or .obj file, or a directory that holds one.
@@ -48,17 +49,9 @@ pub struct RenderArgs {
     /// Stop after the first round that ends later than this, seeding included.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time: Option<Duration>,
-    /// Number of the run: the same seed gives the same image.
-    #[arg(long, default_value_t = EnsembleSettings::default().seed)]
-    pub seed: u64,
-    /// Number of Markov chains.
-    #[arg(long, value_name = "N", default_value_t = EnsembleSettings::default().chains)]
-    #[arg(value_parser = clap::value_parser!(u32).range(1..=65_536))]
-    pub chains: u32,
-    /// Worker threads; as many as there are cores without.
-    #[arg(long, value_name = "N")]
-    #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
-    pub threads: Option<usize>,
+    /// The chains.
+    #[command(flatten)]
+    pub chains: ChainArgs,
     /// The film.
     #[command(flatten)]
     pub film: FilmSize,
@@ -108,7 +101,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<ExitCode> {
     for file in [Some(&args.output), args.stats_json.as_ref()].into_iter().flatten() {
         check_folder(file)?;
     }
-    let scene = input::scene_with_depth(&args.scene, args.film, args.max_depth)?;
+    let (scene, wishes) = input::scene_with_depth(&args.scene, args.film, args.max_depth)?;
     let reference = args.reference.as_deref().map(image_file::read_exr).transpose()?;
     if let Some(reference) = &reference {
         let camera = scene.camera();
@@ -122,19 +115,13 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<ExitCode> {
             camera.height,
         );
     }
-    let defaults = EnsembleSettings::default();
     let settings = RenderSettings {
         integrator: args.integrator.into(),
         budget: match (args.time, args.mutations_per_pixel) {
             (Some(time), _) => Budget::Time(time),
             (None, mutations) => Budget::PerPixel(mutations.unwrap_or(DEFAULT_PER_PIXEL)),
         },
-        ensemble: EnsembleSettings {
-            seed: args.seed,
-            chains: args.chains,
-            threads: args.threads.unwrap_or(defaults.threads),
-            ..defaults
-        },
+        ensemble: args.chains.ensemble(&scene, &wishes)?,
     };
     let mut meter = Meter::new(scene.name(), settings.integrator);
     let Rendering { image, mut report } = render(&scene, &settings, |at| meter.show(at));

@@ -7,11 +7,10 @@ use std::sync::Arc;
 
 use anyhow::{Context as _, ensure};
 use clap::Args;
-use clap::builder::RangedU64ValueParser;
 use tokio::signal;
 
+use super::chains::ChainArgs;
 use super::input::{self, FilmSize};
-use crate::chain::EnsembleSettings;
 use crate::daemon::{DEFAULT_ADDRESS, Daemon, DaemonOptions};
 
 /// Traces a scene for ever, and shows viewers how.
@@ -23,6 +22,7 @@ use crate::daemon::{DEFAULT_ADDRESS, Daemon, DaemonOptions};
 Examples:
   tracer-server serve
   tracer-server serve door --chains 256 --seed 7
+  tracer-server serve door --strategies bidirectional=0.7,lens=0.3
   tracer-server serve scenes/room.toml --listen 127.0.0.1:0 --width 640 --height 480")]
 pub struct ServeArgs {
     /// A built-in scene, a .toml or .obj file, or a directory that holds one.
@@ -31,17 +31,9 @@ pub struct ServeArgs {
     /// Where to listen; port 0 takes any that is free.
     #[arg(long, value_name = "ADDR:PORT", default_value_t = DEFAULT_ADDRESS)]
     pub listen: SocketAddr,
-    /// Number of Markov chains.
-    #[arg(long, value_name = "N", default_value_t = EnsembleSettings::default().chains)]
-    #[arg(value_parser = clap::value_parser!(u32).range(1..=65_536))]
-    pub chains: u32,
-    /// Number of the run: the same seed gives the same paths.
-    #[arg(long, default_value_t = EnsembleSettings::default().seed)]
-    pub seed: u64,
-    /// Worker threads; as many as there are cores without.
-    #[arg(long, value_name = "N")]
-    #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
-    pub threads: Option<usize>,
+    /// The chains.
+    #[command(flatten)]
+    pub chains: ChainArgs,
     /// The film.
     #[command(flatten)]
     pub film: FilmSize,
@@ -58,14 +50,9 @@ pub fn run(args: &ServeArgs) -> anyhow::Result<ExitCode> {
          who they are. Listen on 127.0.0.1, or add --insecure where the network is trusted",
         args.listen,
     );
-    let scene = Arc::new(input::scene(&args.scene, args.film)?);
-    let defaults = EnsembleSettings::default();
-    let ensemble = EnsembleSettings {
-        seed: args.seed,
-        chains: args.chains,
-        threads: args.threads.unwrap_or(defaults.threads),
-        ..defaults
-    };
+    let (scene, wishes) = input::scene(&args.scene, args.film)?;
+    let ensemble = args.chains.ensemble(&scene, &wishes)?;
+    let scene = Arc::new(scene);
     let options = DaemonOptions { listen: args.listen, ensemble, ..DaemonOptions::default() };
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()

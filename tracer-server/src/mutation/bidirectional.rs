@@ -1,7 +1,7 @@
 //! The bidirectional mutation: delete a range of the path and make another in its place
 //! [Veach and Guibas 1997, section 5.1].
 
-use super::Mutation;
+use super::{MixtureBasis, Mutation, Tuning};
 use crate::math::Rng;
 use crate::path::{Draft, Failure, Path, Range, resample};
 use crate::scene::Tracer;
@@ -161,6 +161,11 @@ impl Bidirectional {
 impl Mutation for Bidirectional {
     type Move = Ends;
     const NAME: &'static str = "bidirectional";
+    const WEIGHT: f64 = 0.36;
+
+    fn build(basis: &MixtureBasis<'_>, _tuning: &Tuning) -> Self {
+        Self { max_edges: basis.max_edges }
+    }
 
     fn applicable(&self, _: &Path) -> bool {
         true

@@ -6,8 +6,8 @@
 use common::Camera;
 use std::f64::consts::FRAC_1_PI;
 
-use super::Mutation;
 use super::retrace::{Sizes, repeat, turn};
+use super::{Form, MixtureBasis, Mutation, Parameter, Tuning};
 use crate::math::Rng;
 use crate::path::{Draft, Failure, Path, Splice, extend, open_for_connection};
 use crate::scene::Tracer;
@@ -69,6 +69,19 @@ pub(super) fn chain_pdf(x: &Path, start: usize) -> f64 {
 impl Mutation for CausticPerturbation {
     type Move = Turn;
     const NAME: &'static str = "caustic";
+    const WEIGHT: f64 = 0.14;
+    const PARAMETERS: &'static [Parameter] = &[Parameter {
+        name: "radius",
+        about: "wanted displacement of the image, in pixels",
+        form: Form::Sizes,
+        lowest: 1e-6,
+        highest: 1e6,
+    }];
+
+    fn build(basis: &MixtureBasis<'_>, tuning: &Tuning) -> Self {
+        let usual = Self::new(basis.camera);
+        Self { radius: tuning.sizes("radius").unwrap_or(usual.radius), ..usual }
+    }
 
     fn applicable(&self, x: &Path) -> bool {
         let k = x.edge_count();

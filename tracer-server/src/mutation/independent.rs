@@ -1,7 +1,7 @@
 //! The independent mutation: a whole new path by bidirectional sampling with a random length and
 //! split. It makes the chain able to go anywhere in one step.
 
-use super::Mutation;
+use super::{MixtureBasis, Mutation, Tuning};
 use crate::math::Rng;
 use crate::path::{Draft, Failure, Path, Range, resample};
 use crate::scene::Tracer;
@@ -50,6 +50,11 @@ impl Mutation for Independent {
     /// Nothing of the old path matters.
     type Move = ();
     const NAME: &'static str = "independent";
+    const WEIGHT: f64 = 0.04;
+
+    fn build(basis: &MixtureBasis<'_>, _tuning: &Tuning) -> Self {
+        Self::new(basis.energy, basis.max_edges)
+    }
 
     fn applicable(&self, _: &Path) -> bool {
         true

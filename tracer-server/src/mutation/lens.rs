@@ -3,8 +3,8 @@
 
 use common::Camera;
 
-use super::Mutation;
 use super::retrace::{Sizes, displace, from_lens, walk_pdf};
+use super::{Form, MixtureBasis, Mutation, Parameter, Tuning};
 use crate::math::Rng;
 use crate::path::{Draft, Failure, Path};
 use crate::scene::Tracer;
@@ -27,6 +27,19 @@ impl Mutation for LensPerturbation {
     /// Index of the first diffuse vertex seen from the lens: `d`.
     type Move = usize;
     const NAME: &'static str = "lens";
+    const WEIGHT: f64 = 0.3;
+    const PARAMETERS: &'static [Parameter] = &[Parameter {
+        name: "radius",
+        about: "displacement of the film point, in pixels",
+        form: Form::Sizes,
+        lowest: 1e-6,
+        highest: 1e6,
+    }];
+
+    fn build(basis: &MixtureBasis<'_>, tuning: &Tuning) -> Self {
+        let usual = Self::new(basis.camera);
+        Self { radius: tuning.sizes("radius").unwrap_or(usual.radius) }
+    }
 
     /// The vertex behind the first diffuse one must be connectable, unless the light itself is seen.
     fn applicable(&self, x: &Path) -> bool {

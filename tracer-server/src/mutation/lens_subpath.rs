@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use super::Mutation;
+use super::{MixtureBasis, Mutation, Tuning};
 use crate::bsdf::Scatter as _;
 use crate::math::Rng;
 use crate::path::{
@@ -43,6 +43,11 @@ impl Mutation for LensSubpath {
     /// Index of the first diffuse vertex seen from the lens: the same before and after.
     type Move = usize;
     const NAME: &'static str = "lens subpath";
+    const WEIGHT: f64 = 0.06;
+
+    fn build(basis: &MixtureBasis<'_>, _tuning: &Tuning) -> Self {
+        Self { max_edges: basis.max_edges }
+    }
 
     fn applicable(&self, x: &Path) -> bool {
         let d = x.first_diffuse_from_eye();

@@ -1,57 +1,11 @@
 //! The choice among strategies.
 
 use common::Camera;
-use serde::{Deserialize, Serialize};
 
-use super::{
-    Bidirectional, CausticPerturbation, Independent, LensPerturbation, LensSubpath, MultiChain,
-    Strategy,
-};
+use super::{KINDS, Kind, Strategy, StrategyOptions};
 use crate::math::Rng;
 use crate::path::Path;
 use crate::scene::SceneFeatures;
-
-/// How often each strategy is chosen, relative to the others; zero switches one off.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StrategyWeights {
-    /// Of the bidirectional mutation.
-    pub bidirectional: f64,
-    /// Of the independent mutation.
-    pub independent: f64,
-    /// Of the lens perturbation.
-    pub lens: f64,
-    /// Of the lens subpath mutation.
-    pub lens_subpath: f64,
-    /// Of the caustic perturbation.
-    pub caustic: f64,
-    /// Of the multi-chain perturbation.
-    pub multi_chain: f64,
-}
-
-impl Default for StrategyWeights {
-    fn default() -> Self {
-        Self {
-            bidirectional: 0.36,
-            independent: 0.04,
-            lens: 0.3,
-            lens_subpath: 0.06,
-            caustic: 0.14,
-            multi_chain: 0.1,
-        }
-    }
-}
-
-impl StrategyWeights {
-    /// No strategy at all: a base for mixtures of a few.
-    pub const NONE: Self = Self {
-        bidirectional: 0.0,
-        independent: 0.0,
-        lens: 0.0,
-        lens_subpath: 0.0,
-        caustic: 0.0,
-        multi_chain: 0.0,
-    };
-}
 
 /// What strategies are built from.
 #[derive(Clone, Copy, Debug)]
@@ -73,29 +27,25 @@ pub struct Mixture {
 }
 
 impl Mixture {
-    /// All strategies with a positive weight that the scene has a use for.
-    pub fn new(weights: &StrategyWeights, basis: &MixtureBasis<'_>) -> Self {
-        let &MixtureBasis { camera, max_edges, features, energy } = basis;
-        let multi_chain = if features.specular { weights.multi_chain } else { 0.0 };
-        let all = [
-            (weights.bidirectional, Strategy::Bidirectional(Bidirectional { max_edges })),
-            (weights.independent, Strategy::Independent(Independent::new(energy, max_edges))),
-            (weights.lens, Strategy::Lens(LensPerturbation::new(camera))),
-            (weights.lens_subpath, Strategy::LensSubpath(LensSubpath { max_edges })),
-            (weights.caustic, Strategy::Caustic(CausticPerturbation::new(camera))),
-            (multi_chain, Strategy::MultiChain(MultiChain::new(camera))),
-        ];
-        Self { entries: all.into_iter().filter(|(weight, _)| *weight > 0.0).collect() }
+    /// All strategies that are switched on and that the scene has a use for.
+    pub fn new(options: &StrategyOptions, basis: &MixtureBasis<'_>) -> Self {
+        let on = |&(index, kind): &(usize, &Kind)| {
+            options.weight(index) > 0.0 && (kind.is_possible)(basis.features)
+        };
+        let entry = |(index, kind): (usize, &Kind)| {
+            (options.weight(index), (kind.build)(basis, options.tuning(index)))
+        };
+        Self { entries: KINDS.iter().enumerate().filter(on).map(entry).collect() }
     }
 
-    /// The names of the strategies that a mixture with these weights has on a scene.
+    /// The names of the strategies that a mixture with these options has on a scene.
     pub fn names_for(
-        weights: &StrategyWeights,
+        options: &StrategyOptions,
         camera: &Camera,
         features: SceneFeatures,
     ) -> Vec<String> {
         // What the bootstrap measures changes no name.
-        Self::new(weights, &MixtureBasis { camera, max_edges: 1, features, energy: &[] }).names()
+        Self::new(options, &MixtureBasis { camera, max_edges: 1, features, energy: &[] }).names()
     }
 
     /// Number of strategies.

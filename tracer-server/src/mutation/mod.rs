@@ -1,7 +1,8 @@
 //! Mutation strategies: ways to propose a new path from the current one.
 //!
-//! To add one: write its file with an `impl Mutation`, add a variant to [`Strategy`] and an arm to
-//! `strategy!`, and list it in [`Mixture`]. The laws in `laws.rs` then hold it to account.
+//! To add one: write its file with an `impl Mutation`, declare the module, and add a line to the
+//! list in `strategies!` below: weights, options, tables and checks follow from it.
+//! `docs/ADD_A_MUTATION.md` walks through it.
 
 mod bidirectional;
 mod caustic;
@@ -11,6 +12,7 @@ mod lens_subpath;
 mod mixture;
 mod multi_chain;
 mod retrace;
+mod tuning;
 
 #[cfg(test)]
 mod laws;
@@ -21,16 +23,17 @@ use std::fmt::Debug;
 
 use crate::math::Rng;
 use crate::path::{Draft, Failure, Path};
-use crate::scene::Tracer;
+use crate::scene::{SceneFeatures, Tracer};
 
 pub use bidirectional::{Bidirectional, Ends};
 pub use caustic::{CausticPerturbation, Turn};
 pub use independent::Independent;
 pub use lens::LensPerturbation;
 pub use lens_subpath::LensSubpath;
-pub use mixture::{Mixture, MixtureBasis, StrategyWeights};
+pub use mixture::{Mixture, MixtureBasis};
 pub use multi_chain::MultiChain;
 pub use retrace::Sizes;
+pub use tuning::{Form, OptionError, Parameter, StrategyOptions, Tuning};
 
 /// One way to mutate a path.
 ///
@@ -43,6 +46,23 @@ pub trait Mutation: Debug + Send + Sync {
 
     /// A name for tables, options and viewers.
     const NAME: &'static str;
+    /// How often it is chosen, relative to the others, as long as nobody says otherwise.
+    const WEIGHT: f64;
+    /// What a user may tune.
+    const PARAMETERS: &'static [Parameter] = &[];
+
+    /// The strategy for a scene, with what the user has said of its parameters.
+    fn build(basis: &MixtureBasis<'_>, tuning: &Tuning) -> Self
+    where
+        Self: Sized;
+
+    /// False when a scene with these features has no path that the strategy could change.
+    fn is_possible(_features: SceneFeatures) -> bool
+    where
+        Self: Sized,
+    {
+        true
+    }
 
     /// True when the strategy can do something with `x`.
     fn applicable(&self, x: &Path) -> bool;
@@ -98,9 +118,79 @@ pub fn propose<M: Mutation>(
     Ok(Proposal { ratio: backward / forward, kept_light, kept_eye })
 }
 
-/// A strategy with its parameters.
-#[derive(Clone, Debug)]
-pub enum Strategy {
+/// One entry of the table of strategies.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    /// A name for tables, options and viewers.
+    pub name: &'static str,
+    /// How often it is chosen, relative to the others, as long as nobody says otherwise.
+    pub weight: f64,
+    /// What a user may tune.
+    pub parameters: &'static [Parameter],
+    /// False when a scene with these features has no path that the strategy could change.
+    pub is_possible: fn(SceneFeatures) -> bool,
+    /// The strategy for a scene.
+    pub build: fn(&MixtureBasis<'_>, &Tuning) -> Strategy,
+}
+
+/// Makes of one list the enum of strategies, the table of their kinds, and every `match` on them.
+macro_rules! strategies {
+    ($($(#[$doc:meta])* $variant:ident($mutation:ty),)*) => {
+        /// A strategy with its parameters.
+        #[derive(Clone, Debug)]
+        pub enum Strategy {
+            $($(#[$doc])* $variant($mutation),)*
+        }
+
+        /// Number of strategies.
+        pub const STRATEGY_COUNT: usize = [$(<$mutation as Mutation>::NAME),*].len();
+
+        /// All strategies, in the order of tables.
+        pub const KINDS: [Kind; STRATEGY_COUNT] = [$(Kind {
+            name: <$mutation as Mutation>::NAME,
+            weight: <$mutation as Mutation>::WEIGHT,
+            parameters: <$mutation as Mutation>::PARAMETERS,
+            is_possible: <$mutation as Mutation>::is_possible,
+            build: |basis, tuning| {
+                Strategy::$variant(<$mutation as Mutation>::build(basis, tuning))
+            },
+        }),*];
+
+        impl Strategy {
+            /// A name for tables, options and viewers.
+            pub fn name(&self) -> &'static str {
+                match self {
+                    $(Self::$variant(_) => <$mutation as Mutation>::NAME,)*
+                }
+            }
+
+            /// True when it can do something with `x`.
+            #[inline]
+            pub fn applicable(&self, x: &Path) -> bool {
+                match self {
+                    $(Self::$variant(mutation) => mutation.applicable(x),)*
+                }
+            }
+
+            /// Draws a proposal from `x` into `y`.
+            #[inline]
+            pub fn propose(
+                &self,
+                scene: &Tracer<'_>,
+                x: &Path,
+                rng: &mut Rng,
+                draft: &mut Draft,
+                y: &mut Path,
+            ) -> Result<Proposal, Failure> {
+                match self {
+                    $(Self::$variant(mutation) => propose(mutation, scene, x, rng, draft, y),)*
+                }
+            }
+        }
+    };
+}
+
+strategies! {
     /// Replaces a range by fresh walks.
     Bidirectional(Bidirectional),
     /// Starts anew.
@@ -113,47 +203,4 @@ pub enum Strategy {
     Caustic(CausticPerturbation),
     /// Moves the film point and every further chain a little.
     MultiChain(MultiChain),
-}
-
-/// Does something with the strategy behind the variant: the only match on [`Strategy`].
-macro_rules! strategy {
-    ($strategy:expr, $mutation:ident => $call:expr) => {
-        match $strategy {
-            Strategy::Bidirectional($mutation) => $call,
-            Strategy::Independent($mutation) => $call,
-            Strategy::Lens($mutation) => $call,
-            Strategy::LensSubpath($mutation) => $call,
-            Strategy::Caustic($mutation) => $call,
-            Strategy::MultiChain($mutation) => $call,
-        }
-    };
-}
-
-impl Strategy {
-    /// A name for tables, options and viewers.
-    pub fn name(&self) -> &'static str {
-        fn name<M: Mutation>(_: &M) -> &'static str {
-            M::NAME
-        }
-        strategy!(self, m => name(m))
-    }
-
-    /// True when it can do something with `x`.
-    #[inline]
-    pub fn applicable(&self, x: &Path) -> bool {
-        strategy!(self, m => m.applicable(x))
-    }
-
-    /// Draws a proposal from `x` into `y`.
-    #[inline]
-    pub fn propose(
-        &self,
-        scene: &Tracer<'_>,
-        x: &Path,
-        rng: &mut Rng,
-        draft: &mut Draft,
-        y: &mut Path,
-    ) -> Result<Proposal, Failure> {
-        strategy!(self, m => propose(m, scene, x, rng, draft, y))
-    }
 }

@@ -3,11 +3,11 @@
 
 use common::Camera;
 
-use super::Mutation;
 use super::retrace::{Sizes, displace, from_lens, turn, walk_pdf};
+use super::{Form, MixtureBasis, Mutation, Parameter, Tuning};
 use crate::math::Rng;
 use crate::path::{Draft, Failure, Path};
-use crate::scene::Tracer;
+use crate::scene::{SceneFeatures, Tracer};
 
 /// Displaces the film point, and turns the direction in which every further chain leaves.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +38,35 @@ impl Mutation for MultiChain {
     /// The vertex that the last chain ends at.
     type Move = usize;
     const NAME: &'static str = "multi-chain";
+    const WEIGHT: f64 = 0.1;
+    const PARAMETERS: &'static [Parameter] = &[
+        Parameter {
+            name: "radius",
+            about: "displacement of the film point, in pixels",
+            form: Form::Sizes,
+            lowest: 1e-6,
+            highest: 1e6,
+        },
+        Parameter {
+            name: "angle",
+            about: "turn of every further chain, in radians",
+            form: Form::Sizes,
+            lowest: 1e-9,
+            highest: 3.0,
+        },
+    ];
+
+    fn build(basis: &MixtureBasis<'_>, tuning: &Tuning) -> Self {
+        let usual = Self::new(basis.camera);
+        Self {
+            radius: tuning.sizes("radius").unwrap_or(usual.radius),
+            angle: tuning.sizes("angle").unwrap_or(usual.angle),
+        }
+    }
+
+    fn is_possible(features: SceneFeatures) -> bool {
+        features.specular
+    }
 
     /// There must be at least two chains.
     fn applicable(&self, x: &Path) -> bool {

@@ -15,6 +15,7 @@ use super::diagnostic::{LoadError, Place, Warning};
 use super::obj;
 use super::origin::Origins;
 use super::shape::{Cuboid, Quad, Step, Surface};
+use super::strategies::{self, StrategySetting, StrategyTable};
 use super::validate::Part;
 
 /// A scene file, verbatim.
@@ -41,6 +42,9 @@ pub(super) struct SceneFile {
     /// Analytic spheres: `[[spheres]]`.
     #[serde(default)]
     spheres: Vec<Spanned<SphereEntry>>,
+    /// Weights and sizes of the mutation strategies, by name: `[strategies]`.
+    #[serde(default)]
+    strategies: StrategyTable,
 }
 
 /// Longest path where a scene does not say, in edges.
@@ -187,6 +191,8 @@ pub(super) struct Read {
     pub(super) origins: Origins,
     /// What it asks for in vain.
     pub(super) warnings: Vec<Warning>,
+    /// What it asks of the mutation strategies.
+    pub(super) strategies: Vec<StrategySetting>,
 }
 
 /// Parses the text of a scene file.
@@ -218,7 +224,8 @@ pub(super) fn read(text: &str, file: &Path, name: &str) -> Result<Read, LoadErro
         spheres: Vec::new(),
     };
     let origins = Origins::of_text(file, text);
-    let mut out = Read { description, origins, warnings: Vec::new() };
+    let strategies = strategies::settings(&scene.strategies, text, file);
+    let mut out = Read { description, origins, warnings: Vec::new(), strategies };
     for entry in &scene.materials {
         out.material(text, entry)?;
     }

@@ -8,6 +8,7 @@ use super::builtin::{self, Builtin};
 pub use super::diagnostic::{LoadError, Place, Warning};
 use super::file::{self, DEFAULT_MAX_EDGES, Read};
 use super::origin::Origins;
+use super::strategies::StrategySetting;
 use super::text::read_utf8;
 use super::validate::{Part, Problem, validate};
 use super::{obj, viewpoint};
@@ -24,6 +25,8 @@ pub struct Loaded {
     pub description: SceneDescription,
     /// What it asks for and does not get, or gets in another way.
     pub warnings: Vec<Warning>,
+    /// What it asks of the mutation strategies.
+    pub strategies: Vec<StrategySetting>,
 }
 
 /// Loads a built-in scene by name, a `.toml` or `.obj` file, or a directory that holds one.
@@ -120,7 +123,7 @@ fn read_obj(path: &Path) -> Result<Read, LoadError> {
         meshes: scene.meshes,
         spheres: Vec::new(),
     };
-    Ok(Read { description, origins, warnings: scene.warnings })
+    Ok(Read { description, origins, warnings: scene.warnings, strategies: Vec::new() })
 }
 
 /// The first warnings as lines below an error: what went before often tells why.
@@ -136,7 +139,7 @@ fn notes(warnings: &[Warning]) -> String {
 
 /// Validates what was read; problems and repairs are told with their place.
 fn check(read: Read) -> Result<Loaded, LoadError> {
-    let Read { mut description, origins, mut warnings } = read;
+    let Read { mut description, origins, mut warnings, strategies } = read;
     let names: Vec<String> = description.meshes.iter().map(|mesh| mesh.name.clone()).collect();
     let dropped = validate(&mut description).map_err(|problem| {
         let subject = subject_of(&description, &problem);
@@ -154,7 +157,7 @@ fn check(read: Read) -> Result<Loaded, LoadError> {
             )),
         );
     }
-    Ok(Loaded { description, warnings })
+    Ok(Loaded { description, warnings, strategies })
 }
 
 /// "material `red`, eta: ", or nothing for what is wrong with the whole.

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use super::builtin::BUILTINS;
 use super::load::{Loaded, load};
-use super::{BsdfDescription, SceneDescription};
+use super::{BsdfDescription, SceneDescription, Wish};
 
 /// A smallest scene that loads.
 const GOOD: &str = r#"max_edges = 4
@@ -54,6 +54,26 @@ fn load_text(name: &str, text: impl AsRef<[u8]>) -> Result<Loaded, String> {
 
 fn description(text: &str) -> SceneDescription {
     load_text("good.toml", text).expect("valid").description
+}
+
+#[test]
+fn wishes_about_strategies_are_kept_with_their_lines() {
+    let text =
+        format!("{GOOD}[strategies]\ncaustic = 0\nlens = {{ radius = [1, 2], weight = 3 }}\n");
+    let loaded = load_text("good.toml", &text).expect("valid");
+    let first = GOOD.lines().count() + 2;
+    let wishes: Vec<_> =
+        loaded.strategies.iter().map(|s| (s.strategy.as_str(), s.place.line, &s.wish)).collect();
+    let radius = Wish::Parameter("radius".to_owned(), vec![1.0, 2.0]);
+    let expected = [
+        ("caustic", Some(first), &Wish::Weight(0.0)),
+        ("lens", Some(first + 1), &radius),
+        ("lens", Some(first + 1), &Wish::Weight(3.0)),
+    ];
+    assert_eq!(wishes, expected);
+    let text = format!("{GOOD}[strategies]\nlens = \"much\"\n");
+    let error = load_text("good.toml", &text).expect_err("no weight");
+    assert!(error.contains("a weight, or a table of weight and parameters"), "{error}");
 }
 
 #[test]

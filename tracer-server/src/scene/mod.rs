@@ -23,6 +23,7 @@ mod obj_text;
 mod origin;
 mod preview;
 mod shape;
+mod strategies;
 mod surface;
 mod text;
 mod texture;
@@ -42,6 +43,7 @@ pub use accel::{Anchor, Hit};
 pub use build::SceneError;
 pub use description::{BsdfDescription, Material, Mesh, SceneDescription, Sphere};
 pub use features::SceneFeatures;
+pub use strategies::{StrategySetting, Wish};
 pub use surface::NO_PRIMITIVE;
 pub use tracer::{RayCounts, Tracer};
 
