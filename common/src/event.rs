@@ -47,12 +47,14 @@ pub enum Event {
     Reflect = 2,
     /// Smooth refraction.
     Transmit = 3,
+    /// Non-Dirac reflection or refraction by a rough boundary.
+    Glossy = 4,
 }
 
 impl Event {
     /// The event that travels as `code`, or `None` for a code this version does not know.
     pub fn from_code(code: u8) -> Option<Self> {
-        [Self::End, Self::Diffuse, Self::Reflect, Self::Transmit]
+        [Self::End, Self::Diffuse, Self::Reflect, Self::Transmit, Self::Glossy]
             .into_iter()
             .find(|event| *event as u8 == code)
     }
@@ -69,6 +71,7 @@ impl Event {
             Self::Diffuse => "diffuse",
             Self::Reflect => "reflect",
             Self::Transmit => "refract",
+            Self::Glossy => "glossy",
         }
     }
 }

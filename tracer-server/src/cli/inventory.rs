@@ -163,7 +163,9 @@ fn bounds(description: &SceneDescription) -> (DVec3, DVec3) {
 fn material_rows(description: &SceneDescription, usage: &[Usage]) -> Vec<MaterialRow> {
     let row = |(material, usage): (&crate::scene::Material, &Usage)| {
         let (model, color, eta) = match material.bsdf {
-            BsdfDescription::Lambert { reflectance } => ("lambert", reflectance, None),
+            BsdfDescription::Lambert { reflectance } => {
+                ("lambert", description.mean_color(reflectance), None)
+            }
             BsdfDescription::Mirror { reflectance } => ("mirror", reflectance, None),
             BsdfDescription::Dielectric { eta, transmittance, .. } => {
                 ("dielectric", transmittance, Some(eta))

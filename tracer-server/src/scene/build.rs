@@ -86,8 +86,11 @@ impl Scene {
             accel = Accel::new(triangles, accel.balls().to_vec());
         }
         let (emitters, primitives, radiance_scale) = light_up(description, &accel, &materials);
-        let surfaces =
-            description.materials.iter().map(|m| surface(m, 1.0 / radiance_scale)).collect();
+        let surfaces = description
+            .materials
+            .iter()
+            .map(|m| surface(description, m, 1.0 / radiance_scale))
+            .collect();
         Ok(Self {
             name: description.name.clone(),
             hash: hash::digest(description),
@@ -250,9 +253,15 @@ fn light_up(
     (Emitters::new(&sources), primitives, radiance_scale)
 }
 
-fn surface(material: &Material, emission_factor: f64) -> SurfaceMaterial {
+fn surface(
+    description: &SceneDescription,
+    material: &Material,
+    emission_factor: f64,
+) -> SurfaceMaterial {
     let bsdf = match material.bsdf {
-        BsdfDescription::Lambert { reflectance } => Bsdf::Lambert(Lambert { reflectance }),
+        BsdfDescription::Lambert { reflectance } => {
+            Bsdf::Lambert(Lambert { reflectance: description.mean_color(reflectance) })
+        }
         BsdfDescription::Mirror { reflectance } => Bsdf::Mirror(Mirror { reflectance }),
         BsdfDescription::Dielectric { eta, reflectance, transmittance } => {
             Bsdf::Dielectric(Dielectric { eta, reflectance, transmittance })

@@ -3,7 +3,9 @@
 //! Every loader ends here, and [`super::Scene`] begins here.
 
 use common::{CameraPose, Rgb};
-use glam::DVec3;
+use glam::{DVec3, Vec2, Vec3};
+
+pub use super::material::{BsdfDescription, Coding, ColorInput, Material, Texture};
 
 /// A whole scene in the units of its file.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,45 +22,26 @@ pub struct SceneDescription {
     pub max_edges: usize,
     /// Materials; shapes refer to them by index.
     pub materials: Vec<Material>,
+    /// Textures; materials refer to them by index.
+    pub textures: Vec<Texture>,
     /// Triangle meshes.
     pub meshes: Vec<Mesh>,
     /// Analytic spheres.
     pub spheres: Vec<Sphere>,
 }
 
-/// How a surface scatters and emits.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Material {
-    /// The name in the scene file.
-    pub name: String,
-    /// How it scatters.
-    pub bsdf: BsdfDescription,
-    /// Radiance emitted from the front side (the side the normal points to); black for none.
-    pub emission: Rgb,
-}
-
-/// The parameters of a scattering model.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum BsdfDescription {
-    /// Ideal diffuse reflection on both sides.
-    Lambert {
-        /// Albedo, each channel in [0, 1].
-        reflectance: Rgb,
-    },
-    /// Ideal mirror on both sides.
-    Mirror {
-        /// Reflectance at every angle, each channel in [0, 1].
-        reflectance: Rgb,
-    },
-    /// A smooth boundary between two transparent media.
-    Dielectric {
-        /// Index of refraction behind the surface over the one in front of it.
-        eta: f64,
-        /// Tint of reflected light, each channel in [0, 1].
-        reflectance: Rgb,
-        /// Tint of refracted light, each channel in [0, 1].
-        transmittance: Rgb,
-    },
+impl SceneDescription {
+    /// The colour of an input on the average over its texture; black where there is no such
+    /// texture.
+    pub fn mean_color(&self, input: ColorInput) -> Rgb {
+        match input {
+            ColorInput::Constant(color) => color,
+            ColorInput::Texture { texture, factor } => {
+                let texture = self.textures.get(usize::from(texture));
+                texture.map_or(Rgb::BLACK, Texture::mean) * factor
+            }
+        }
+    }
 }
 
 /// An indexed triangle mesh.
@@ -72,6 +55,12 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Index of the material, one a triangle.
     pub materials: Vec<u16>,
+    /// Shading normals at the three corners, one triple a triangle; empty for a flat mesh. They
+    /// need no unit length; where one is zero, the triangle's own normal stands for it.
+    pub normals: Vec<[Vec3; 3]>,
+    /// Texture coordinates at the three corners, one triple a triangle; empty where there are
+    /// none. `u` runs to the right of the image and `v` upwards.
+    pub texcoords: Vec<[Vec2; 3]>,
 }
 
 /// A sphere whose front side is its outside.

@@ -220,6 +220,7 @@ pub(super) fn read(text: &str, file: &Path, name: &str) -> Result<Read, LoadErro
         height: scene.film.height,
         max_edges: scene.max_edges,
         materials: Vec::new(),
+        textures: Vec::new(),
         meshes: Vec::new(),
         spheres: Vec::new(),
     };
@@ -261,9 +262,8 @@ impl Read {
             self.error(&place, field, format!("material `{name}`, {field}: {message}"))
         })?;
         self.description.materials.push(Material {
-            name: name.clone(),
-            bsdf,
             emission: material.emission.map_or(Rgb::BLACK, Rgb::from),
+            ..Material::new(name, bsdf)
         });
         self.origins.materials.push(place);
         Ok(())
@@ -315,7 +315,8 @@ impl Read {
                 surface.flip();
             }
             let Surface { positions, triangles } = surface;
-            self.description.meshes.push(Mesh { name, positions, triangles, materials });
+            let mesh = Mesh { name, positions, triangles, materials, ..Mesh::default() };
+            self.description.meshes.push(mesh);
             self.origins.meshes.push(place.clone());
         }
         Ok(())
@@ -425,7 +426,7 @@ impl MaterialEntry {
         }
         match self.model {
             Model::Lambert => {
-                Ok(BsdfDescription::Lambert { reflectance: reflectance.ok_or(needed)? })
+                Ok(BsdfDescription::Lambert { reflectance: reflectance.ok_or(needed)?.into() })
             }
             Model::Mirror => {
                 Ok(BsdfDescription::Mirror { reflectance: reflectance.ok_or(needed)? })

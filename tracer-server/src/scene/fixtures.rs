@@ -3,7 +3,7 @@
 use common::{CameraPose, Rgb};
 use glam::DVec3;
 
-use super::{BsdfDescription, Material, Mesh, Scene, SceneDescription, Sphere};
+use super::{BsdfDescription, ColorInput, Material, Mesh, Scene, SceneDescription, Sphere};
 
 /// Builds descriptions shape by shape.
 #[derive(Clone, Debug)]
@@ -12,7 +12,7 @@ pub(crate) struct Fixture {
 }
 
 pub(crate) const fn lambert(r: f64, g: f64, b: f64) -> BsdfDescription {
-    BsdfDescription::Lambert { reflectance: Rgb::new(r, g, b) }
+    BsdfDescription::Lambert { reflectance: ColorInput::Constant(Rgb::new(r, g, b)) }
 }
 
 pub(crate) const MIRROR: BsdfDescription =
@@ -36,6 +36,7 @@ impl Fixture {
                 height: 32,
                 max_edges: 6,
                 materials: Vec::new(),
+                textures: Vec::new(),
                 meshes: Vec::new(),
                 spheres: Vec::new(),
             },
@@ -44,7 +45,7 @@ impl Fixture {
 
     fn material(&mut self, bsdf: BsdfDescription, emission: Rgb) -> u16 {
         let name = format!("material {}", self.description.materials.len());
-        self.description.materials.push(Material { name, bsdf, emission });
+        self.description.materials.push(Material { emission, ..Material::new(name, bsdf) });
         (self.description.materials.len() - 1) as u16
     }
 
@@ -64,6 +65,7 @@ impl Fixture {
             positions: vec![c, c + u, c + u + v, c + v],
             triangles: vec![[0, 1, 2], [0, 2, 3]],
             materials: vec![material; 2],
+            ..Mesh::default()
         });
         self
     }

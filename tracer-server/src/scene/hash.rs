@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::SceneDescription;
-use super::description::BsdfDescription;
+use super::description::{BsdfDescription, ColorInput};
 use common::Rgb;
 
 /// Hex digest of everything that the picture depends on, names included.
@@ -14,6 +14,7 @@ pub(crate) fn digest(description: &SceneDescription) -> String {
     for material in &description.materials {
         h.text(&material.name);
         h.color(material.emission);
+        h.0.update(&[u8::from(material.two_sided)]);
         h.bsdf(&material.bsdf);
     }
     for mesh in &description.meshes {
@@ -23,6 +24,16 @@ pub(crate) fn digest(description: &SceneDescription) -> String {
         h.count(mesh.triangles.len());
         h.0.update(bytemuck::cast_slice(&mesh.triangles));
         h.0.update(bytemuck::cast_slice(&mesh.materials));
+        h.count(mesh.normals.len());
+        h.0.update(bytemuck::cast_slice(&mesh.normals));
+        h.count(mesh.texcoords.len());
+        h.0.update(bytemuck::cast_slice(&mesh.texcoords));
+    }
+    for texture in &description.textures {
+        h.count(texture.width as usize);
+        h.count(texture.height as usize);
+        h.count(texture.coding as usize);
+        h.0.update(texture.texels.as_flattened());
     }
     for sphere in &description.spheres {
         h.text(&sphere.name);
@@ -70,11 +81,24 @@ impl Digest {
         self.count(description.max_edges);
     }
 
+    fn color_input(&mut self, input: ColorInput) {
+        match input {
+            ColorInput::Constant(color) => {
+                self.count(0);
+                self.color(color);
+            }
+            ColorInput::Texture { texture, factor } => {
+                self.count(1 + usize::from(texture));
+                self.color(factor);
+            }
+        }
+    }
+
     fn bsdf(&mut self, bsdf: &BsdfDescription) {
         match *bsdf {
             BsdfDescription::Lambert { reflectance } => {
                 self.count(0);
-                self.color(reflectance);
+                self.color_input(reflectance);
             }
             BsdfDescription::Mirror { reflectance } => {
                 self.count(1);

@@ -120,6 +120,7 @@ fn read_obj(path: &Path) -> Result<Read, LoadError> {
         height: view.height,
         max_edges: DEFAULT_MAX_EDGES,
         materials: scene.materials,
+        textures: Vec::new(),
         meshes: scene.meshes,
         spheres: Vec::new(),
     };

@@ -16,6 +16,7 @@ mod hash;
 pub mod load;
 #[cfg(test)]
 mod malformed;
+mod material;
 mod mtl;
 mod mtl_text;
 mod obj;
@@ -41,7 +42,9 @@ use emitter::Emitters;
 
 pub use accel::{Anchor, Hit};
 pub use build::SceneError;
-pub use description::{BsdfDescription, Material, Mesh, SceneDescription, Sphere};
+pub use description::{
+    BsdfDescription, Coding, ColorInput, Material, Mesh, SceneDescription, Sphere, Texture,
+};
 pub use features::SceneFeatures;
 pub use strategies::{StrategySetting, Wish};
 pub use surface::NO_PRIMITIVE;

@@ -58,7 +58,7 @@ impl MtlEntry {
         } else {
             self.opaque(emission, &mut notes)
         };
-        (Material { name: self.name.clone(), bsdf, emission }, notes)
+        (Material { emission, ..Material::new(&self.name, bsdf) }, notes)
     }
 
     fn radiance(&self, notes: &mut Vec<String>) -> Rgb {
@@ -132,7 +132,9 @@ impl MtlEntry {
         let is_metal = self.metallic.is_some_and(|metallic| metallic >= 0.5);
         let lobe = if is_metal && specular.is_black() { diffuse } else { specular };
         if lobe.is_black() {
-            return BsdfDescription::Lambert { reflectance: within("Kd", diffuse, 1.0, notes) };
+            return BsdfDescription::Lambert {
+                reflectance: within("Kd", diffuse, 1.0, notes).into(),
+            };
         }
         let dominant = is_metal || lobe.luminance() > diffuse.luminance();
         let narrow = self.lobe_roughness() < MIRROR_ROUGHNESS;
@@ -160,7 +162,7 @@ impl MtlEntry {
             self.lobe_roughness(),
             show(albedo)
         ));
-        BsdfDescription::Lambert { reflectance: albedo }
+        BsdfDescription::Lambert { reflectance: albedo.into() }
     }
 
     /// `Kd` times the mean of its texture.
@@ -232,7 +234,7 @@ mod tests {
             illumination: Some(2),
             ..MtlEntry::default()
         };
-        let expected = BsdfDescription::Lambert { reflectance: Rgb::grey(0.7) };
+        let expected = BsdfDescription::Lambert { reflectance: Rgb::grey(0.7).into() };
         assert_eq!(bsdf(&matt), (expected, 0));
 
         let glass = MtlEntry {
@@ -313,7 +315,7 @@ mod tests {
             ..MtlEntry::default()
         };
         let (material, notes) = phong.to_material();
-        let expected = BsdfDescription::Lambert { reflectance: Rgb::grey(0.95) };
+        let expected = BsdfDescription::Lambert { reflectance: Rgb::grey(0.95).into() };
         assert_eq!(material.bsdf, expected, "the lobes' sum, kept below one");
         assert!(notes[0].contains("glossy"), "{notes:?}");
     }
@@ -325,18 +327,18 @@ mod tests {
             diffuse_map: Some(Ok(Rgb::new(0.2, 0.4, 0.6))),
             ..MtlEntry::default()
         };
-        let expected = BsdfDescription::Lambert { reflectance: Rgb::new(0.1, 0.2, 0.3) };
+        let expected = BsdfDescription::Lambert { reflectance: Rgb::new(0.1, 0.2, 0.3).into() };
         assert_eq!(bsdf(&painted), (expected, 1));
         let lost = MtlEntry { diffuse_map: Some(Err("a.png: gone".into())), ..MtlEntry::default() };
         let (material, notes) = lost.to_material();
-        assert_eq!(material.bsdf, BsdfDescription::Lambert { reflectance: Rgb::grey(0.5) });
+        assert_eq!(material.bsdf, BsdfDescription::Lambert { reflectance: Rgb::grey(0.5).into() });
         assert!(notes[0].contains("a.png: gone"), "{notes:?}");
     }
 
     #[test]
     fn more_than_all_light_is_scaled_down() {
         let entry = MtlEntry { diffuse: Some(Rgb::new(2.0, 1.0, 0.0)), ..MtlEntry::default() };
-        let expected = BsdfDescription::Lambert { reflectance: Rgb::new(1.0, 0.5, 0.0) };
+        let expected = BsdfDescription::Lambert { reflectance: Rgb::new(1.0, 0.5, 0.0).into() };
         assert_eq!(bsdf(&entry), (expected, 1));
     }
 }

@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 use common::Rgb;
 use glam::DVec3;
 
-use super::description::{BsdfDescription, Material, Mesh};
+use super::description::{BsdfDescription, Coding, Material, Mesh};
 use super::diagnostic::{LoadError, Place, Warning};
 use super::mtl::{MtlEntry, UNKNOWN_GREY};
 use super::mtl_text::{self, MtlText, texture_file};
 use super::obj_text::{self, ObjText};
 use super::text::read_lossy;
-use super::texture::mean_color;
+use super::texture::read_texture;
 
 /// The most bytes of an OBJ file that are read.
 const MAX_OBJ_BYTES: u64 = 2 << 30;
@@ -131,7 +131,8 @@ struct Images {
 impl Images {
     fn mean(&mut self, value: &str) -> Result<Rgb, String> {
         let file = self.folder.join(texture_file(value));
-        self.means.entry(file).or_insert_with_key(|file| mean_color(file)).clone()
+        let mean = |file: &PathBuf| Ok(read_texture(file, Coding::Srgb)?.mean());
+        self.means.entry(file).or_insert_with_key(mean).clone()
     }
 
     fn entry(&mut self, source: &tobj::Material) -> MtlEntry {
@@ -168,11 +169,8 @@ fn add_meshes(
     let grey = scene.materials.len();
     let needs_grey = |m: &tobj::Model| m.mesh.material_id.is_none() && !m.mesh.indices.is_empty();
     if models.iter().any(needs_grey) {
-        scene.materials.push(Material {
-            name: "(none)".to_owned(),
-            bsdf: BsdfDescription::Lambert { reflectance: Rgb::grey(UNKNOWN_GREY) },
-            emission: Rgb::BLACK,
-        });
+        let grey = BsdfDescription::Lambert { reflectance: Rgb::grey(UNKNOWN_GREY).into() };
+        scene.materials.push(Material::new("(none)", grey));
         scene.places.push(Place::file(path));
     }
     for tobj::Model { mesh, name } in models {
@@ -190,6 +188,7 @@ fn add_meshes(
             positions: positions.iter().map(|&p| DVec3::from_array(p)).collect(),
             materials: vec![material; triangles.len()],
             triangles,
+            ..Mesh::default()
         });
     }
     Ok(())

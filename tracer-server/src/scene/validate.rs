@@ -4,7 +4,9 @@ use common::{Camera, Rgb};
 use glam::DVec3;
 
 use super::MAX_EDGES;
-use super::description::{BsdfDescription, Material, Mesh, SceneDescription, Sphere};
+use super::description::{
+    BsdfDescription, ColorInput, Material, Mesh, SceneDescription, Sphere, Texture,
+};
 
 /// Coordinates beyond this are a mistake: squares and products of them stay far inside an `f64`,
 /// but nothing that a picture needs is lost in their rounding.
@@ -69,8 +71,12 @@ pub(super) struct Dropped {
 pub(super) fn validate(scene: &mut SceneDescription) -> Result<Vec<Dropped>, Problem> {
     check_film(scene)?;
     check_camera(scene)?;
+    for texture in &scene.textures {
+        check_texture(texture).map_err(|(field, m)| Problem::new(Part::Scene, field, m))?;
+    }
     for (i, material) in scene.materials.iter().enumerate() {
-        check_material(material).map_err(|(field, m)| Problem::new(Part::Material(i), field, m))?;
+        check_material(material, scene.textures.len())
+            .map_err(|(field, m)| Problem::new(Part::Material(i), field, m))?;
     }
     let materials = scene.materials.len();
     for (i, mesh) in scene.meshes.iter().enumerate() {
@@ -145,16 +151,38 @@ pub(super) fn check_point(point: DVec3) -> Result<(), String> {
     Ok(())
 }
 
-fn check_material(material: &Material) -> Result<(), Fault> {
+/// The factor of a texture that exists, or the colour itself: what must be in [0, 1].
+fn factor_of(field: &'static str, input: ColorInput, textures: usize) -> Result<Rgb, Fault> {
+    match input {
+        ColorInput::Constant(color) => Ok(color),
+        ColorInput::Texture { texture, factor } if usize::from(texture) < textures => Ok(factor),
+        ColorInput::Texture { texture, .. } => {
+            Err((field, format!("texture {texture} does not exist; there are {textures}")))
+        }
+    }
+}
+
+fn check_texture(texture: &Texture) -> Result<(), Fault> {
+    let texels = u64::from(texture.width) * u64::from(texture.height);
+    if texels > 0 && texels == texture.texels.len() as u64 {
+        return Ok(());
+    }
+    let Texture { name, width, height, texels, .. } = texture;
+    let count = texels.len();
+    Err(("", format!("texture `{name}` of {width} x {height} texels has {count} of them")))
+}
+
+fn check_material(material: &Material, textures: usize) -> Result<(), Fault> {
     let share = |field: &'static str, color: Rgb| {
         let inside = color.is_physical() && color.max_channel() <= 1.0;
         let message = || format!("{} must have all channels in [0, 1]", show(color));
         if inside { Ok(()) } else { Err((field, message())) }
     };
     match material.bsdf {
-        BsdfDescription::Lambert { reflectance } | BsdfDescription::Mirror { reflectance } => {
-            share("reflectance", reflectance)?;
+        BsdfDescription::Lambert { reflectance } => {
+            share("reflectance", factor_of("reflectance", reflectance, textures)?)?;
         }
+        BsdfDescription::Mirror { reflectance } => share("reflectance", reflectance)?,
         BsdfDescription::Dielectric { eta, reflectance, transmittance } => {
             share("reflectance", reflectance)?;
             share("transmittance", transmittance)?;
@@ -205,10 +233,30 @@ fn check_mesh(mesh: &Mesh, materials: usize) -> Result<(), Fault> {
         );
         return Err(("material", message));
     }
+    check_corners(mesh)?;
     match mesh.materials.iter().find(|&&m| usize::from(m) >= materials) {
         Some(bad) => {
             Err(("material", format!("material {bad} does not exist; there are {materials}")))
         }
+        None => Ok(()),
+    }
+}
+
+/// Normals and texture coordinates: none, or three finite ones a triangle.
+fn check_corners(mesh: &Mesh) -> Result<(), Fault> {
+    let triangles = mesh.triangles.len();
+    let listed = |field: &'static str, count: usize| {
+        let message = || format!("{triangles} triangles, but {count} triples of {field}");
+        if count == 0 || count == triangles { Ok(()) } else { Err((field, message())) }
+    };
+    listed("normals", mesh.normals.len())?;
+    listed("texcoords", mesh.texcoords.len())?;
+    let not_finite = |i| format!("triangle {i} holds a number that is not finite");
+    if let Some(i) = mesh.normals.iter().position(|t| !t.iter().all(|n| n.is_finite())) {
+        return Err(("normals", not_finite(i)));
+    }
+    match mesh.texcoords.iter().position(|t| !t.iter().all(|uv| uv.is_finite())) {
+        Some(i) => Err(("texcoords", not_finite(i))),
         None => Ok(()),
     }
 }
@@ -232,10 +280,10 @@ fn drop_degenerate(scene: &mut SceneDescription) -> Vec<Dropped> {
         let before = mesh.triangles.len();
         let keep: Vec<bool> =
             mesh.triangles.iter().map(|&t| !is_degenerate(&mesh.positions, t)).collect();
-        let mut flags = keep.iter();
-        mesh.triangles.retain(|_| flags.next().copied().unwrap_or(false));
-        let mut flags = keep.iter();
-        mesh.materials.retain(|_| flags.next().copied().unwrap_or(false));
+        keep_flagged(&mut mesh.triangles, &keep);
+        keep_flagged(&mut mesh.materials, &keep);
+        keep_flagged(&mut mesh.normals, &keep);
+        keep_flagged(&mut mesh.texcoords, &keep);
         let triangles = before - mesh.triangles.len();
         if triangles > 0 {
             dropped.push(Dropped { mesh: index, triangles });
@@ -243,6 +291,12 @@ fn drop_degenerate(scene: &mut SceneDescription) -> Vec<Dropped> {
     }
     scene.meshes.retain(|mesh| !mesh.triangles.is_empty());
     dropped
+}
+
+/// Keeps the items whose flag is set; an empty list stays empty.
+fn keep_flagged<T>(items: &mut Vec<T>, keep: &[bool]) {
+    let mut flags = keep.iter();
+    items.retain(|_| flags.next().copied().unwrap_or(false));
 }
 
 /// True for a triangle without area, to the precision of its coordinates.
