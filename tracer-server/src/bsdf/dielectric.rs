@@ -4,7 +4,7 @@ use common::{Event, Rgb};
 use glam::DVec3;
 
 use super::{Scatter, Scattering, reflect};
-use crate::math::Rng;
+use crate::math::{Rng, below_one};
 
 /// Reflects and refracts by Fresnel's equations; absorbs only through its tints.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,10 +51,20 @@ fn fresnel(cos_i: f64, eta: f64) -> f64 {
 }
 
 impl Scatter for Dielectric {
-    fn sample(&self, n: DVec3, w: DVec3, rng: &mut Rng) -> Option<(DVec3, Event)> {
+    fn sample(&self, n: DVec3, w: DVec3, [u, ..]: [f64; 3]) -> Option<(DVec3, Event)> {
         let reflected = fresnel(n.dot(w).abs(), self.relative_eta(n, w));
-        let event = if rng.uniform() < reflected { Event::Reflect } else { Event::Transmit };
+        let event = if u < reflected { Event::Reflect } else { Event::Transmit };
         self.follow(n, w, event).map(|direction| (direction, event))
+    }
+
+    fn invert(&self, n: DVec3, w: DVec3, _: DVec3, event: Event, rng: &mut Rng) -> [f64; 3] {
+        let reflected = fresnel(n.dot(w).abs(), self.relative_eta(n, w));
+        let [u, rest @ ..] = rng.array::<3>();
+        let choice = match event {
+            Event::Reflect => u * reflected,
+            _ => reflected + u * (1.0 - reflected),
+        };
+        [below_one(choice), rest[0], rest[1]]
     }
 
     fn evaluate(&self, n: DVec3, w_l: DVec3, w_e: DVec3, event: Event) -> Option<Scattering> {

@@ -6,7 +6,7 @@ use common::{Event, Rgb};
 use glam::DVec3;
 
 use super::{Scatter, Scattering};
-use crate::math::{Frame, Rng, cosine_hemisphere};
+use crate::math::{Frame, Rng, cosine_hemisphere, invert_cosine_hemisphere};
 
 /// Reflects the same radiance in all directions: `f = reflectance / pi`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,13 +17,19 @@ pub struct Lambert {
 
 impl Scatter for Lambert {
     #[inline]
-    fn sample(&self, n: DVec3, w: DVec3, rng: &mut Rng) -> Option<(DVec3, Event)> {
+    fn sample(&self, n: DVec3, w: DVec3, [_, u, v]: [f64; 3]) -> Option<(DVec3, Event)> {
         if self.reflectance.is_black() {
             return None;
         }
         let facing = if n.dot(w) > 0.0 { n } else { -n };
-        let local = cosine_hemisphere(rng.uniform(), rng.uniform());
+        let local = cosine_hemisphere(u, v);
         Some((Frame::new(facing).to_world(local), Event::Diffuse))
+    }
+
+    fn invert(&self, n: DVec3, w: DVec3, w_out: DVec3, _: Event, rng: &mut Rng) -> [f64; 3] {
+        let facing = if n.dot(w) > 0.0 { n } else { -n };
+        let [u, v] = invert_cosine_hemisphere(Frame::new(facing).to_local(w_out));
+        [rng.uniform(), u, v]
     }
 
     #[inline]

@@ -34,7 +34,7 @@ fn samples_are_unit_vectors_that_evaluate() {
     for (name, bsdf) in MODELS {
         let mut drawn = 0;
         for w in directions(2000) {
-            let Some((onward, event)) = bsdf.sample(N, w, &mut rng) else { continue };
+            let Some((onward, event)) = bsdf.sample(N, w, rng.array()) else { continue };
             drawn += 1;
             assert!((onward.length() - 1.0).abs() < 1e-9, "{name}: {onward} is no unit vector");
             let s = bsdf.evaluate(N, onward, w, event);
@@ -54,7 +54,7 @@ fn scattering_is_reciprocal() {
     let mut rng = Rng::new(8, Stream::Laboratory, 2);
     for (name, bsdf) in MODELS {
         for w in directions(2000) {
-            let Some((onward, event)) = bsdf.sample(N, w, &mut rng) else { continue };
+            let Some((onward, event)) = bsdf.sample(N, w, rng.array()) else { continue };
             let there = bsdf.evaluate(N, onward, w, event).expect("a drawn direction");
             let back = bsdf.evaluate(N, w, onward, event).expect("and its reverse");
             assert_eq!(there.color, back.color, "{name}: colour");
@@ -78,7 +78,7 @@ fn energy_is_not_made() {
         for w in directions(64) {
             let mut sum = 0.0;
             for _ in 0..500 {
-                let Some((onward, event)) = bsdf.sample(N, w, &mut rng) else { continue };
+                let Some((onward, event)) = bsdf.sample(N, w, rng.array()) else { continue };
                 // Made by a walk from the light, which carries flux.
                 let s = bsdf.evaluate(N, w, onward, event).expect("a drawn direction");
                 sum += (s.color * s.light_weight).max_channel() / 500.0;
@@ -101,7 +101,7 @@ fn samples_follow_their_density() {
         for w in directions(3) {
             let mut observed = vec![0_u64; CELLS * CELLS + 2];
             for _ in 0..SAMPLES {
-                let Some((onward, event)) = bsdf.sample(N, w, &mut rng) else { continue };
+                let Some((onward, event)) = bsdf.sample(N, w, rng.array()) else { continue };
                 let cell = match event {
                     Event::Reflect => CELLS * CELLS,
                     Event::Transmit => CELLS * CELLS + 1,
@@ -165,15 +165,49 @@ fn total_reflection_and_grazing_light_are_no_trap() {
     assert_eq!(glass.follow(DVec3::Z, inside, Event::Transmit), None, "nothing is refracted");
     let mut rng = Rng::new(8, Stream::Laboratory, 5);
     for _ in 0..100 {
-        let (_, event) = glass.sample(DVec3::Z, inside, &mut rng).expect("all is reflected");
+        let (_, event) = glass.sample(DVec3::Z, inside, rng.array()).expect("all is reflected");
         assert_eq!(event, Event::Reflect, "total internal reflection");
     }
     let grazing = DVec3::new(1.0, 0.0, 1e-12).normalize();
     for (name, bsdf) in MODELS {
-        if let Some((onward, event)) = bsdf.sample(DVec3::Z, grazing, &mut rng)
+        if let Some((onward, event)) = bsdf.sample(DVec3::Z, grazing, rng.array())
             && let Some(s) = bsdf.evaluate(DVec3::Z, onward, grazing, event)
         {
             assert!(s.eye_weight.is_finite() && s.eye_pdf.is_finite(), "{name}: {s:?}");
+        }
+    }
+}
+
+/// The inverse gives numbers that make the same sample again, and numbers that were uniform before
+/// they made a sample are uniform again: chi-square over each pair of them.
+#[test]
+fn inverses_lead_back_to_uniform_numbers() {
+    const SAMPLES: usize = 100_000;
+    const CELLS: usize = 16;
+    let mut rng = Rng::new(8, Stream::Laboratory, 6);
+    for (name, bsdf) in MODELS {
+        for w in directions(3) {
+            let mut observed = vec![vec![0_u64; CELLS * CELLS]; 3];
+            for _ in 0..SAMPLES {
+                let mut u = rng.array();
+                if let Some((onward, event)) = bsdf.sample(N, w, u) {
+                    u = bsdf.invert(N, w, onward, event, &mut rng);
+                    assert!(u.iter().all(|u| (0.0..1.0).contains(u)), "{name}: {u:?}");
+                    let (again, same) = bsdf.sample(N, w, u).expect("a sample");
+                    assert_eq!(same, event, "{name}: another event");
+                    let error = (again - onward).length();
+                    assert!(error < 1e-7, "{name}: {again} instead of {onward}");
+                }
+                let cell = u.map(|u| (u * CELLS as f64) as usize);
+                for (pair, (i, j)) in [(0, 1), (1, 2), (2, 0)].into_iter().enumerate() {
+                    observed[pair][cell[i] * CELLS + cell[j]] += 1;
+                }
+            }
+            let expected = vec![SAMPLES as f64 / (CELLS * CELLS) as f64; CELLS * CELLS];
+            for observed in observed {
+                let result = chi_square_test(&observed, &expected, 20.0).expect("valid counts");
+                assert!(result.p_value > 1e-8, "{name} from {w}: p = {:e}", result.p_value);
+            }
         }
     }
 }

@@ -14,8 +14,12 @@ pub struct Mirror {
 }
 
 impl Scatter for Mirror {
-    fn sample(&self, n: DVec3, w: DVec3, _: &mut Rng) -> Option<(DVec3, Event)> {
+    fn sample(&self, n: DVec3, w: DVec3, _: [f64; 3]) -> Option<(DVec3, Event)> {
         self.follow(n, w, Event::Reflect).map(|direction| (direction, Event::Reflect))
+    }
+
+    fn invert(&self, _: DVec3, _: DVec3, _: DVec3, _: Event, rng: &mut Rng) -> [f64; 3] {
+        rng.array()
     }
 
     fn evaluate(&self, n: DVec3, w_l: DVec3, w_e: DVec3, event: Event) -> Option<Scattering> {

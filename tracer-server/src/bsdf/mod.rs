@@ -49,9 +49,15 @@ pub struct Scattering {
 /// What a scattering model must provide. All directions are unit vectors that point away from the
 /// surface; `n` is the unit geometric normal on the front side.
 pub trait Scatter {
-    /// Draws an event and the direction the walk goes on, given the direction `w` it came from.
-    /// `None` when the walk is absorbed.
-    fn sample(&self, n: DVec3, w: DVec3, rng: &mut Rng) -> Option<(DVec3, Event)>;
+    /// Makes of uniform numbers an event (of the first) and the direction the walk goes on (of the
+    /// other two), given the direction `w` it came from. `None` when the walk is absorbed.
+    fn sample(&self, n: DVec3, w: DVec3, u: [f64; 3]) -> Option<(DVec3, Event)>;
+
+    /// Numbers from which [`Scatter::sample`] would have made `w_out` and `event`.
+    ///
+    /// Where many numbers would have, as for a discrete choice, `rng` draws one of them uniformly:
+    /// numbers that were uniform before they made a sample are uniform again.
+    fn invert(&self, n: DVec3, w: DVec3, w_out: DVec3, event: Event, rng: &mut Rng) -> [f64; 3];
 
     /// All values of the vertex; `None` where they are zero.
     fn evaluate(&self, n: DVec3, w_l: DVec3, w_e: DVec3, event: Event) -> Option<Scattering>;
@@ -91,8 +97,12 @@ macro_rules! model {
 
 impl Scatter for Bsdf {
     #[inline]
-    fn sample(&self, n: DVec3, w: DVec3, rng: &mut Rng) -> Option<(DVec3, Event)> {
-        model!(self, m => m.sample(n, w, rng))
+    fn sample(&self, n: DVec3, w: DVec3, u: [f64; 3]) -> Option<(DVec3, Event)> {
+        model!(self, m => m.sample(n, w, u))
+    }
+
+    fn invert(&self, n: DVec3, w: DVec3, w_out: DVec3, event: Event, rng: &mut Rng) -> [f64; 3] {
+        model!(self, m => m.invert(n, w, w_out, event, rng))
     }
 
     #[inline]

@@ -110,7 +110,7 @@ fn radiance(scene: &Tracer<'_>, mut direction: DVec3, rng: &mut Rng) -> Rgb {
         }
         let bsdf = scene.bsdf(next.material);
         if bsdf.connectable().is_some() {
-            sum += throughput * sample_light(scene, &next, -direction, rng);
+            sum += throughput * sample_light(scene, &next, -direction, rng.array());
         }
         if edges >= SURE_EDGES {
             let chance = bsdf.albedo().clamp(0.1, 0.95);
@@ -120,7 +120,7 @@ fn radiance(scene: &Tracer<'_>, mut direction: DVec3, rng: &mut Rng) -> Rgb {
             throughput = throughput / chance;
         }
         let back = -direction;
-        let Ok(onward) = scatter(scene, &mut next, back, rng) else { break };
+        let Ok(onward) = scatter(scene, &mut next, back, rng.array()) else { break };
         let Some(s) = bsdf.evaluate(next.normal, onward, back, next.event) else { break };
         throughput *= s.color * s.eye_weight;
         pdf = if next.event.is_specular() { f64::INFINITY } else { s.eye_pdf };
@@ -145,8 +145,8 @@ fn hit_light(scene: &Tracer<'_>, from: &Vertex, hit: &Vertex, direction: DVec3, 
 }
 
 /// Direct light from a sampled point, weighted against hitting it by scattering.
-fn sample_light(scene: &Tracer<'_>, at: &Vertex, back: DVec3, rng: &mut Rng) -> Rgb {
-    let light = light_vertex(scene, rng);
+fn sample_light(scene: &Tracer<'_>, at: &Vertex, back: DVec3, u: [f64; 3]) -> Rgb {
+    let light = light_vertex(scene, u);
     let Some(emission) = scene.emission(light.primitive) else { return Rgb::BLACK };
     let span = light.position - at.position;
     let distance_squared = span.length_squared();

@@ -27,6 +27,12 @@ impl Frame {
     pub fn to_world(self, v: DVec3) -> DVec3 {
         v.x * self.x + v.y * self.y + v.z * self.z
     }
+
+    /// The coordinates of `v` in this basis.
+    #[inline]
+    pub fn to_local(self, v: DVec3) -> DVec3 {
+        DVec3::new(self.x.dot(v), self.y.dot(v), self.z.dot(v))
+    }
 }
 
 #[cfg(test)]

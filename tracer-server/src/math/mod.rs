@@ -8,4 +8,7 @@ mod warp;
 pub use frame::Frame;
 pub use rng::{Rng, Stream};
 pub use sum::Accumulator;
-pub use warp::{cosine_hemisphere, log_uniform, uniform_sphere, uniform_triangle};
+pub use warp::{
+    below_one, cosine_hemisphere, invert_cosine_hemisphere, invert_uniform_sphere,
+    invert_uniform_triangle, log_uniform, uniform_sphere, uniform_triangle,
+};

@@ -45,6 +45,12 @@ impl Rng {
         (self.0.next_u64() >> 11) as f64 * SCALE
     }
 
+    /// `N` numbers in [0, 1), one after the other.
+    #[inline]
+    pub fn array<const N: usize>(&mut self) -> [f64; N] {
+        std::array::from_fn(|_| self.uniform())
+    }
+
     /// An integer in `0..n`; zero for `n == 0`.
     #[inline]
     pub fn below(&mut self, n: usize) -> usize {

@@ -17,7 +17,7 @@ use crate::math::{Rng, Stream};
 use crate::parallel;
 use crate::path::{BidirectionalSampler, Draft, Failure, Path};
 use crate::scene::fixtures::{
-    Fixture, diffuse_room, floor_through_glass, slab_over_floor, specular_room,
+    Fixture, diffuse_room, floor_through_glass, saturated_room, slab_over_floor, specular_room,
     wall_and_lamp_in_a_pane, wall_in_a_pane,
 };
 use crate::scene::{Scene, Tracer};
@@ -345,7 +345,7 @@ fn assert_found(mutant: &Mutant<'_>, scene: &Scene, test: Test, samples: u64) {
 
 #[test]
 fn wrong_bidirectional_mutations_are_found() {
-    let scene = specular_room().build();
+    let scene = saturated_room().build();
     let right = Bidirectional { max_edges: scene.max_edges() };
     for mutant in mutants::of_bidirectional(right) {
         assert_found(&mutant, &scene, Test::Steps(3), 60_000);

@@ -78,7 +78,7 @@ impl Mutation for LensSubpath {
                 draft.eye.push(at);
                 break;
             }
-            direction = scatter(scene, &mut at, -direction, rng)?;
+            direction = scatter(scene, &mut at, -direction, rng.array())?;
             draft.eye.push(at);
         }
         let splice = Splice {

@@ -6,9 +6,8 @@ use glam::DVec2;
 
 use super::resample::{end_on_light, open_for_connection};
 use super::walk::{emit, extend, light_vertex, scatter};
-use super::{MAX_VERTICES, Path, Splice, Vertex, Vertices, camera_vertex};
+use super::{MAX_VERTICES, Numbers, Path, ROW, Splice, Strand, Vertex, Vertices, camera_vertex};
 use crate::bsdf::Scatter as _;
-use crate::math::Rng;
 use crate::scene::Tracer;
 
 /// Vertices of a subpath that are made before Russian roulette begins.
@@ -42,28 +41,33 @@ impl Subpath {
     }
 
     /// Walks on from `from` in `direction` until it is lost, absorbed or `limit` vertices long.
+    /// `numbers` gives the numbers of scattering and of Russian roulette for vertex 1, 2, ...
     fn grow(
         &mut self,
         scene: &Tracer<'_>,
         from: &Vertex,
         mut direction: glam::DVec3,
         limit: usize,
-        rng: &mut Rng,
+        mut numbers: impl FnMut(usize) -> [f64; ROW],
     ) {
         let mut at = *from;
         let mut survival = 1.0;
-        while self.vertices.len() < limit {
+        for made in 1.. {
+            if self.vertices.len() >= limit {
+                return;
+            }
             let Ok(next) = extend(scene, &at, direction) else { return };
             self.push(next, survival);
             let last = self.vertices.len() - 1;
+            let [u @ .., roulette] = numbers(made);
             if last + 1 >= SURE_VERTICES {
                 let chance = scene.bsdf(next.material).albedo().clamp(0.1, 1.0);
-                if rng.uniform() >= chance {
+                if roulette >= chance {
                     return;
                 }
                 survival *= chance;
             }
-            match scatter(scene, &mut self.vertices[last], -direction, rng) {
+            match scatter(scene, &mut self.vertices[last], -direction, u) {
                 Ok(next_direction) => direction = next_direction,
                 Err(_) => return,
             }
@@ -103,18 +107,23 @@ impl BidirectionalSampler {
         &mut self,
         scene: &Tracer<'_>,
         film: DVec2,
-        rng: &mut Rng,
+        numbers: &mut impl Numbers,
         mut visit: impl FnMut(&Path, f64),
     ) {
         let limit = scene.max_edges();
         self.light.clear();
         self.eye.clear();
         let lens = camera_vertex(scene);
-        self.eye.grow(scene, &lens, scene.camera().direction(film), limit, rng);
-        let lamp = light_vertex(scene, rng);
-        let direction = emit(&lamp, rng);
+        let direction = scene.camera().direction(film);
+        self.eye.grow(scene, &lens, direction, limit, |j| {
+            numbers.row(Strand::Eye, Strand::Eye.scattering_row(j))
+        });
+        let lamp = light_vertex(scene, numbers.row(Strand::Light, 0));
+        let direction = emit(&lamp, numbers.row(Strand::Light, 1));
         self.light.push(lamp, 1.0);
-        self.light.grow(scene, &lamp, direction, limit, rng);
+        self.light.grow(scene, &lamp, direction, limit, |j| {
+            numbers.row(Strand::Light, Strand::Light.scattering_row(j))
+        });
 
         for eye in 0..=self.eye.vertices.len() {
             if eye > 0 && self.hit_light(scene, eye, film) {

@@ -2,9 +2,11 @@
 
 use std::f64::consts::PI;
 
+use common::Rgb;
 use glam::DVec2;
+use tests::chi_square_test;
 
-use super::{BidirectionalSampler, Path, Splice};
+use super::{BidirectionalSampler, Path, Splice, emit, invert_emission, light_vertex};
 use crate::bsdf::Bsdf;
 use crate::math::{Rng, Stream};
 use crate::scene::Tracer;
@@ -122,4 +124,42 @@ fn all_splits_tell_one_contribution() {
         }
     }
     assert!(compared > 5000, "only {compared} splits compared");
+}
+
+/// The inverses of light points and emission make the same light vertex again, and lead from
+/// uniform numbers to uniform numbers.
+#[test]
+fn light_points_and_emission_are_inverted() {
+    const SAMPLES: usize = 100_000;
+    const CELLS: usize = 32;
+    let lamps = specular_room().sphere(
+        crate::scene::fixtures::lambert(0.1, 0.1, 0.1),
+        Rgb::new(9.0, 9.0, 9.0),
+        [0.6, 0.6, 0.0],
+        0.2,
+    );
+    let scene = lamps.build();
+    let scene = Tracer::new(&scene);
+    let mut rng = Rng::new(6, Stream::Laboratory, 0);
+    let mut observed = vec![vec![0_u64; CELLS]; 5];
+    for _ in 0..SAMPLES {
+        let light = light_vertex(&scene, rng.array());
+        let direction = emit(&light, rng.array());
+        let point = scene.invert_light(light.primitive, light.position, &mut rng).expect("a light");
+        let aim = invert_emission(&light, direction);
+        let again = light_vertex(&scene, point);
+        assert_eq!(again.primitive, light.primitive, "another light");
+        let off = (again.position - light.position).length();
+        // Scenes are about a thousand units wide.
+        assert!(off < 1e-4, "the point is off by {off}");
+        assert!((emit(&again, aim) - direction).length() < 1e-6, "another direction");
+        for (counts, u) in observed.iter_mut().zip(point.into_iter().chain(aim)) {
+            counts[(u * CELLS as f64) as usize] += 1;
+        }
+    }
+    let expected = vec![SAMPLES as f64 / CELLS as f64; CELLS];
+    for (i, counts) in observed.iter().enumerate() {
+        let result = chi_square_test(counts, &expected, 20.0).expect("valid counts");
+        assert!(result.p_value > 1e-8, "number {i}: p = {:e}", result.p_value);
+    }
 }

@@ -9,6 +9,7 @@
 mod assemble;
 mod bidirectional;
 mod failure;
+mod numbers;
 mod record;
 mod resample;
 mod vertex;
@@ -17,9 +18,10 @@ mod walk;
 pub use assemble::Splice;
 pub use bidirectional::BidirectionalSampler;
 pub use failure::Failure;
+pub use numbers::{Numbers, ROW, Strand};
 pub use resample::{Draft, Range, end_on_light, open_for_connection, resample};
 pub use vertex::Vertex;
-pub use walk::{camera_vertex, emit, extend, light_vertex, scatter};
+pub use walk::{camera_vertex, emit, extend, invert_emission, light_vertex, scatter};
 
 use arrayvec::ArrayVec;
 use common::Rgb;

@@ -3,9 +3,8 @@
 use glam::DVec2;
 
 use super::walk::{emit, light_vertex, scatter, walk};
-use super::{Failure, Path, Splice, Vertex, Vertices};
+use super::{Failure, Numbers, Path, Splice, Strand, Vertex, Vertices};
 use crate::bsdf::Scatter as _;
-use crate::math::Rng;
 use crate::scene::Tracer;
 use common::VertexKind;
 
@@ -47,13 +46,26 @@ pub fn resample(
     scene: &Tracer<'_>,
     x: &Path,
     range: Range,
-    rng: &mut Rng,
+    numbers: &mut impl Numbers,
     draft: &mut Draft,
     y: &mut Path,
 ) -> Result<(), Failure> {
     draft.clear();
-    walk_from_light(scene, x, range, rng, &mut draft.light)?;
-    let film = walk_from_eye(scene, x, range, rng, &mut draft.eye)?;
+    let Draft { light, eye, .. } = draft;
+    walk_from_light(scene, x, range, numbers, light)?;
+    let film = walk_from_eye(scene, x, range, numbers, eye)?;
+    join(scene, x, range, film, draft, y)
+}
+
+/// Makes `y` of what is kept of `x` and of the two walks in `draft`.
+fn join(
+    scene: &Tracer<'_>,
+    x: &Path,
+    range: Range,
+    film: Option<DVec2>,
+    draft: &mut Draft,
+    y: &mut Path,
+) -> Result<(), Failure> {
     let connected = range.kept_light + range.from_light > 0;
     if connected {
         if let Some(end) = draft.light.last_mut().filter(|v| v.kind != VertexKind::Light) {
@@ -97,7 +109,7 @@ fn walk_from_light(
     scene: &Tracer<'_>,
     x: &Path,
     range: Range,
-    rng: &mut Rng,
+    numbers: &mut impl Numbers,
     out: &mut Vertices,
 ) -> Result<(), Failure> {
     if range.from_light == 0 {
@@ -106,23 +118,25 @@ fn walk_from_light(
     let mut count = range.from_light;
     let (start, direction) = match range.kept_light {
         0 => {
-            let start = light_vertex(scene, rng);
+            let start = light_vertex(scene, numbers.row(Strand::Light, 0));
             out.push(start);
             count -= 1;
             if count == 0 {
                 return Ok(());
             }
-            (start, emit(&start, rng))
+            (start, emit(&start, numbers.row(Strand::Light, 1)))
         }
-        1 => (x.vertices()[0], emit(&x.vertices()[0], rng)),
+        1 => (x.vertices()[0], emit(&x.vertices()[0], numbers.row(Strand::Light, 1))),
         kept => {
             let mut start = x.vertices()[kept - 1];
             let back = -x.edges()[kept - 2].direction;
-            let direction = scatter(scene, &mut start, back, rng)?;
+            let direction = scatter(scene, &mut start, back, numbers.row(Strand::Light, kept))?;
             (start, direction)
         }
     };
-    walk(scene, &start, direction, count, rng, out)
+    let kept = range.kept_light.max(1) - 1;
+    let scattering = |j| numbers.row(Strand::Light, Strand::Light.scattering_row(kept + j));
+    walk(scene, &start, direction, count, scattering, out)
 }
 
 /// Returns the film point, if the walk starts at the lens and draws one.
@@ -130,20 +144,23 @@ fn walk_from_eye(
     scene: &Tracer<'_>,
     x: &Path,
     range: Range,
-    rng: &mut Rng,
+    numbers: &mut impl Numbers,
     out: &mut Vertices,
 ) -> Result<Option<DVec2>, Failure> {
     if range.from_eye == 0 {
         return Ok(None);
     }
     let mut start = x.vertices()[range.kept_from];
+    // Vertices kept behind the lens, which is number zero of the walk.
+    let kept = x.edge_count() - range.kept_from;
     let (direction, film) = if start.is_lens() {
-        let film = DVec2::new(rng.uniform(), rng.uniform());
+        let film = DVec2::from(numbers.row(Strand::Eye, 0));
         (scene.camera().direction(film), Some(film))
     } else {
         let back = x.edges()[range.kept_from].direction;
-        (scatter(scene, &mut start, back, rng)?, None)
+        (scatter(scene, &mut start, back, numbers.row(Strand::Eye, kept))?, None)
     };
-    walk(scene, &start, direction, range.from_eye, rng, out)?;
+    let scattering = |j| numbers.row(Strand::Eye, Strand::Eye.scattering_row(kept + j));
+    walk(scene, &start, direction, range.from_eye, scattering, out)?;
     Ok(film)
 }

@@ -51,6 +51,13 @@ impl Emitters {
         index.min(self.list.len() - 1) as u32
     }
 
+    /// The numbers for which [`Emitters::choose`] gives the emitter `index`: from, and up to.
+    pub(crate) fn share(&self, index: u32) -> (f64, f64) {
+        let index = index as usize;
+        let from = index.checked_sub(1).map_or(0.0, |before| self.cumulative[before]);
+        (from, self.cumulative[index])
+    }
+
     #[inline]
     pub(crate) fn get(&self, index: u32) -> Option<&Emitter> {
         self.list.get(index as usize)

@@ -146,6 +146,16 @@ pub(crate) fn specular_room() -> Fixture {
     )
 }
 
+/// A room whose walls reflect one channel each: the luminance of a product of colours is far from
+/// the product of their luminances.
+pub(crate) fn saturated_room() -> Fixture {
+    let (red, green, blue) =
+        (lambert(0.9, 0.05, 0.05), lambert(0.05, 0.9, 0.05), lambert(0.05, 0.05, 0.9));
+    Fixture::new(DVec3::new(0.1, 0.0, 0.95), DVec3::new(0.0, -0.1, -1.0), 70.0)
+        .room(&[red, green, blue, WHITE, red, green], Rgb::BLACK)
+        .quad(BLACK, Rgb::new(12.0, 9.0, 6.0), [-0.3, 0.9, -0.3], [0.6, 0., 0.], [0., 0., 0.5])
+}
+
 /// A high-contrast floor under a wide lamp, seen through a small glass ball before the camera.
 pub(crate) fn floor_through_glass() -> Fixture {
     let mut fixture = Fixture::new(DVec3::new(0.0, 0.9, 0.0), DVec3::new(0.0, -1.0, 0.0), 60.0)

@@ -36,7 +36,7 @@ use common::{Camera, Rgb, SceneFrame};
 use glam::DVec3;
 
 use crate::bsdf::Bsdf;
-use crate::math::Rng;
+use crate::math::{Rng, below_one};
 use accel::Accel;
 use emitter::Emitters;
 
@@ -189,12 +189,12 @@ impl Scene {
         Some(Emission { radiance: emitter.radiance, area_pdf })
     }
 
-    /// A point on a light with the density that [`Emission::area_pdf`] tells.
+    /// A point on a light with the density that [`Emission::area_pdf`] tells, made of uniform
+    /// numbers: the first chooses the light, the other two the point on it.
     #[inline]
-    pub fn sample_light(&self, rng: &mut Rng) -> LightSample {
-        let index = self.emitters.choose(rng.uniform());
+    pub fn sample_light(&self, [choice, u, v]: [f64; 3]) -> LightSample {
+        let index = self.emitters.choose(choice);
         let primitive = self.emitters.list()[index as usize].primitive;
-        let (u, v) = (rng.uniform(), rng.uniform());
         let (position, normal) = match self.accel.triangles().get(primitive as usize) {
             Some(triangle) => (triangle.sample(u, v), triangle.normal),
             None => {
@@ -203,5 +203,21 @@ impl Scene {
         };
         let anchor = Anchor { position, normal, primitive };
         LightSample { anchor, material: self.material_of(primitive) }
+    }
+
+    /// Numbers from which [`Scene::sample_light`] would have made the point `at` of a light; `None`
+    /// where the primitive is no light. Among the many numbers that choose the light `rng` draws one
+    /// uniformly.
+    pub fn invert_light(&self, primitive: u32, at: DVec3, rng: &mut Rng) -> Option<[f64; 3]> {
+        let emitter = self.primitives.get(primitive as usize)?.emitter;
+        self.emitters.get(emitter)?;
+        let (from, to) = self.emitters.share(emitter);
+        let choice = below_one(from + rng.uniform() * (to - from));
+        let triangles = self.accel.triangles();
+        let [u, v] = match triangles.get(primitive as usize) {
+            Some(triangle) => triangle.invert(at),
+            None => self.accel.balls()[primitive as usize - triangles.len()].invert(at),
+        };
+        Some([choice, u, v])
     }
 }

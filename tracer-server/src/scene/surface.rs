@@ -2,7 +2,9 @@
 
 use glam::{DVec3, Vec3A};
 
-use crate::math::{uniform_sphere, uniform_triangle};
+use crate::math::{
+    invert_uniform_sphere, invert_uniform_triangle, uniform_sphere, uniform_triangle,
+};
 
 /// Stands for "no primitive": the lens.
 pub const NO_PRIMITIVE: u32 = u32::MAX;
@@ -71,6 +73,16 @@ impl Triangle {
         self.v0 + b1 * self.e1 + b2 * self.e2
     }
 
+    /// The numbers from which [`Triangle::sample`] makes the point `at`.
+    pub(crate) fn invert(&self, at: DVec3) -> [f64; 2] {
+        let cross = self.e1.cross(self.e2);
+        let from_corner = at - self.v0;
+        let scale = 1.0 / cross.length_squared();
+        let b1 = from_corner.cross(self.e2).dot(cross) * scale;
+        let b2 = self.e1.cross(from_corner).dot(cross) * scale;
+        invert_uniform_triangle(b1.max(0.0), b2.max(0.0))
+    }
+
     pub(crate) fn to_single(self) -> [Vec3A; 3] {
         self.corners().map(|c: DVec3| c.as_vec3a())
     }
@@ -93,6 +105,11 @@ impl Ball {
     pub(crate) fn sample(&self, u: f64, v: f64) -> (DVec3, DVec3) {
         let normal = uniform_sphere(u, v);
         (self.centre + self.radius * normal, normal)
+    }
+
+    /// The numbers from which [`Ball::sample`] makes the point `at`.
+    pub(crate) fn invert(&self, at: DVec3) -> [f64; 2] {
+        invert_uniform_sphere(self.normal(at))
     }
 
     /// Distances at which the line meets the sphere, the smaller one first.
