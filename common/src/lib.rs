@@ -7,6 +7,7 @@ mod batch;
 mod camera;
 mod color;
 mod event;
+mod filter;
 mod id;
 mod mesh;
 mod metric;
@@ -19,6 +20,11 @@ pub use batch::{
 pub use camera::{Camera, CameraError, CameraPose};
 pub use color::Rgb;
 pub use event::{Event, VertexKind};
+pub use filter::{
+    Attribute, Comparison, CompiledFilter, Filter, FilterCounts, FilterError, FilterObject,
+    FilterScene, FilterTally, Leaf, LightPathExpression, MAX_FILTER_BYTES, MAX_LEAVES, Name, Named,
+    Place, Selector, SelectorKind, VertexClass, VertexTest, Volume,
+};
 pub use id::{ChainId, MaterialId, PathId, StrategyId};
 pub use mesh::{MaterialInfo, SceneFrame, SceneMesh};
 pub use metric::{mean_ratio, relative_mse};

@@ -1,0 +1,61 @@
+//! Filters: their text, their judgement, and what their tally says.
+
+mod judgement;
+mod light_path;
+mod text;
+
+use glam::DVec3;
+
+use super::*;
+use crate::{Event, PathHeader, SceneFrame, VertexKind, VertexRecord};
+
+/// A scene whose frame is not the file's, with names of every kind.
+fn scene() -> FilterScene {
+    let strings = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
+    FilterScene {
+        frame: SceneFrame { centre: DVec3::new(1.0, 2.0, 3.0), scale: 4.0 },
+        materials: strings(&["wall", "glass", "lamp", "wall"]),
+        strategies: strings(&["bidirectional", "lens", "lens subpath"]),
+        objects: vec![
+            FilterObject { name: "table".to_owned(), primitives: 0..10 },
+            FilterObject { name: "vase".to_owned(), primitives: 10..12 },
+        ],
+    }
+}
+
+fn compiled(text: &str) -> CompiledFilter {
+    let filter = Filter::parse(text).unwrap_or_else(|e| panic!("{}", e.pointed(text)));
+    filter.compile(&scene()).unwrap_or_else(|e| panic!("{}", e.pointed(text)))
+}
+
+/// A vertex at a point of the file.
+fn vertex(kind: VertexKind, event: Event, point: [f64; 3], material: u16) -> VertexRecord {
+    let position = scene().frame.to_scene(DVec3::from_array(point)).as_vec3().to_array();
+    VertexRecord { position, normal: [0, 0], kind, event, material, primitive: 0 }
+}
+
+/// A path with one vertex a letter, from the light: `L`, `E`, diffuse `D`, glossy `G`, mirror `S`,
+/// glass `T`.
+/// Vertex `i` lies at `(i, 0, 0)` in the file; glass is material 1, the lamp 2, all else wall.
+fn path(letters: &str) -> Vec<VertexRecord> {
+    let record = |(i, letter)| {
+        let (kind, event, material) = match letter {
+            'L' => (VertexKind::Light, Event::End, 2),
+            'E' => (VertexKind::Eye, Event::End, 0),
+            'S' => (VertexKind::Specular, Event::Reflect, 0),
+            'G' => (VertexKind::Diffuse, Event::Glossy, 0),
+            'T' => (VertexKind::Specular, Event::Transmit, 1),
+            _ => (VertexKind::Diffuse, Event::Diffuse, 3),
+        };
+        vertex(kind, event, [i as f64, 0.0, 0.0], material)
+    };
+    letters.chars().enumerate().map(record).collect()
+}
+
+/// Whether the filter wants the path, asked in both ways.
+fn wants(text: &str, header: &PathHeader, path: &[VertexRecord]) -> bool {
+    let filter = compiled(text);
+    let wanted = filter.matches(header, path);
+    assert_eq!(filter.wants(filter.conditions(header, path)), wanted, "`{text}` on {path:?}");
+    wanted
+}
