@@ -3,11 +3,13 @@
 mod frame;
 mod rng;
 mod sum;
+mod torus;
 mod warp;
 
 pub use frame::Frame;
 pub use rng::{Rng, Stream};
 pub use sum::Accumulator;
+pub use torus::TorusStep;
 pub use warp::{
     below_one, cosine_hemisphere, invert_cosine_hemisphere, invert_uniform_sphere,
     invert_uniform_triangle, log_uniform, uniform_sphere, uniform_triangle,

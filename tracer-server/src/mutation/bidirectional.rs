@@ -161,7 +161,7 @@ impl Bidirectional {
 impl Mutation for Bidirectional {
     type Move = Ends;
     const NAME: &'static str = "bidirectional";
-    const WEIGHT: f64 = 0.36;
+    const WEIGHT: f64 = 0.25;
 
     fn build(basis: &MixtureBasis<'_>, _tuning: &Tuning) -> Self {
         Self { max_edges: basis.max_edges }

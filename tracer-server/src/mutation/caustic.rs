@@ -69,7 +69,7 @@ pub(super) fn chain_pdf(x: &Path, start: usize) -> f64 {
 impl Mutation for CausticPerturbation {
     type Move = Turn;
     const NAME: &'static str = "caustic";
-    const WEIGHT: f64 = 0.14;
+    const WEIGHT: f64 = 0.1;
     const PARAMETERS: &'static [Parameter] = &[Parameter {
         name: "radius",
         about: "wanted displacement of the image, in pixels",

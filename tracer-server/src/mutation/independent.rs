@@ -50,7 +50,7 @@ impl Mutation for Independent {
     /// Nothing of the old path matters.
     type Move = ();
     const NAME: &'static str = "independent";
-    const WEIGHT: f64 = 0.04;
+    const WEIGHT: f64 = 0.03;
 
     fn build(basis: &MixtureBasis<'_>, _tuning: &Tuning) -> Self {
         Self::new(basis.energy, basis.max_edges)

@@ -11,7 +11,7 @@ use tests::{Accumulator, Suite, ZScore, z_limit};
 use super::mutants::{self, Mutant};
 use super::{
     Bidirectional, CausticPerturbation, Independent, LensPerturbation, LensSubpath, MultiChain,
-    Mutation, Proposal, Sizes, propose,
+    Mutation, Primary, Proposal, Sizes, propose,
 };
 use crate::math::{Rng, Stream};
 use crate::parallel;
@@ -325,6 +325,21 @@ fn multi_chain_leaves_the_target_alone() {
     }
 }
 
+#[test]
+fn primary_leaves_the_target_alone() {
+    let scenes = [
+        ("diffuse", diffuse_room()),
+        ("specular", specular_room()),
+        ("glass", floor_through_glass()),
+        ("slab", slab_over_floor(true)),
+    ];
+    for (name, fixture) in scenes {
+        let scene = fixture.build();
+        let mutation = Primary::default();
+        assert_lawful(&format!("primary, {name}"), &scene, &strategy(&mutation));
+    }
+}
+
 /// With angles wide enough to matter to a room.
 fn wide_multi_chain(scene: &Scene) -> MultiChain {
     MultiChain { angle: Sizes { min: 1e-3, max: 0.5 }, ..MultiChain::new(scene.camera()) }
@@ -400,6 +415,15 @@ fn wrong_multi_chain_perturbations_are_found() {
     }
 }
 
+#[test]
+fn wrong_primary_mutations_are_found() {
+    let (room, glass) = (specular_room().build(), floor_through_glass().build());
+    for mutant in mutants::of_primary(Primary::default()) {
+        let (scene, samples) = if mutant.needs_glass { (&glass, 240_000) } else { (&room, 60_000) };
+        assert_found(&mutant, scene, Test::Steps(3), samples);
+    }
+}
+
 /// The ratio of a move and of its reverse are reciprocal, and every cached value of a proposal is
 /// what a path built from scratch would hold.
 #[test]
@@ -412,6 +436,7 @@ fn proposals_are_reversible_and_their_caches_are_fresh() {
     check_moves(&scene, &l);
     check_moves(&scene, &LensSubpath { max_edges: scene.max_edges() });
     check_moves(&scene, &CausticPerturbation::new(scene.camera()));
+    check_moves(&scene, &Primary::default());
     check_moves(&slab_over_floor(true).build(), &MultiChain::new(scene.camera()));
 }
 

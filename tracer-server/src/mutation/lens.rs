@@ -27,7 +27,7 @@ impl Mutation for LensPerturbation {
     /// Index of the first diffuse vertex seen from the lens: `d`.
     type Move = usize;
     const NAME: &'static str = "lens";
-    const WEIGHT: f64 = 0.3;
+    const WEIGHT: f64 = 0.2;
     const PARAMETERS: &'static [Parameter] = &[Parameter {
         name: "radius",
         about: "displacement of the film point, in pixels",

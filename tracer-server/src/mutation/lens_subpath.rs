@@ -43,7 +43,7 @@ impl Mutation for LensSubpath {
     /// Index of the first diffuse vertex seen from the lens: the same before and after.
     type Move = usize;
     const NAME: &'static str = "lens subpath";
-    const WEIGHT: f64 = 0.06;
+    const WEIGHT: f64 = 0.05;
 
     fn build(basis: &MixtureBasis<'_>, _tuning: &Tuning) -> Self {
         Self { max_edges: basis.max_edges }

@@ -11,6 +11,7 @@ mod lens;
 mod lens_subpath;
 mod mixture;
 mod multi_chain;
+mod primary;
 mod retrace;
 mod tuning;
 
@@ -32,6 +33,7 @@ pub use lens::LensPerturbation;
 pub use lens_subpath::LensSubpath;
 pub use mixture::{Mixture, MixtureBasis};
 pub use multi_chain::MultiChain;
+pub use primary::Primary;
 pub use retrace::Sizes;
 pub use tuning::{Form, OptionError, Parameter, StrategyOptions, Tuning};
 
@@ -203,4 +205,6 @@ strategies! {
     Caustic(CausticPerturbation),
     /// Moves the film point and every further chain a little.
     MultiChain(MultiChain),
+    /// Moves the numbers behind the path a little.
+    Primary(Primary),
 }

@@ -38,7 +38,7 @@ impl Mutation for MultiChain {
     /// The vertex that the last chain ends at.
     type Move = usize;
     const NAME: &'static str = "multi-chain";
-    const WEIGHT: f64 = 0.1;
+    const WEIGHT: f64 = 0.07;
     const PARAMETERS: &'static [Parameter] = &[
         Parameter {
             name: "radius",

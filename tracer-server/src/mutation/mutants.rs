@@ -7,10 +7,10 @@ use super::laws::Propose;
 use super::retrace::{displace, from_lens, walk_pdf};
 use super::{
     Bidirectional, CausticPerturbation, Ends, Independent, LensPerturbation, LensSubpath,
-    MultiChain, Mutation, Proposal, Sizes, propose,
+    MultiChain, Mutation, Primary, Proposal, Sizes, propose,
 };
-use crate::math::Rng;
-use crate::path::{Draft, Failure, Path};
+use crate::math::{Rng, TorusStep};
+use crate::path::{Draft, Failure, Path, Strand, Tape};
 use crate::scene::Tracer;
 
 /// A strategy that is wrong in one place.
@@ -222,5 +222,58 @@ pub(super) fn of_multi_chain<'a>(right: MultiChain) -> Vec<Mutant<'a>> {
             misjudged(&right, args, |x, y, end| right.transition(x, y, end) * inner_cosines(y, end))
         }),
         mutant("multi-chain: drawn again after a failure", move |args| redrawn(&right, args)),
+    ]
+}
+
+pub(super) fn of_primary<'a>(right: Primary) -> Vec<Mutant<'a>> {
+    /// Proposes with a tape that was spoilt.
+    fn spoilt(
+        right: Primary,
+        (scene, x, rng, draft, y): Args<'_, '_, '_>,
+        spoil: impl Fn(&Path, &mut Tape),
+    ) -> Result<Proposal, Failure> {
+        let light = Primary::choose_split(x, rng);
+        let mut tape = Tape::of(scene, x, light, rng).ok_or(Failure::NoSubpath)?;
+        spoil(x, &mut tape);
+        right.rebuild(scene, (x, light, &tape), rng, draft, y)?;
+        Ok(Proposal { ratio: x.density_sum() / y.density_sum(), kept_light: 0, kept_eye: 1 })
+    }
+    let mut event = mutant("primary: the choice of the event is not inverted", move |args| {
+        spoilt(right, args, |x, tape| {
+            for (strand, row, numbers) in tape.rows_mut() {
+                let specular =
+                    strand == Strand::Eye && row > 0 && !x.is_connectable(x.edge_count() - row);
+                numbers[0] = if specular { 0.0 } else { numbers[0] };
+            }
+        })
+    });
+    event.needs_glass = true;
+    // Long steps fail more often where the picture is busy.
+    let long = Primary { step: TorusStep::new(0.02, 0.3), ..right };
+    let mut again =
+        mutant("primary: drawn again after a failure", move |args| redrawn(&long, args));
+    again.needs_glass = true;
+    vec![
+        mutant("primary: ratio upside down", move |args| {
+            misjudged(&right, args, |x, _, _| x.density_sum())
+        }),
+        mutant("primary: the ratio of one split", move |args| {
+            misjudged(&right, args, |x, _, light| 1.0 / x.reciprocal(light))
+        }),
+        mutant("primary: every split as likely as any other", move |(scene, x, rng, draft, y)| {
+            let splits = (0..=x.edge_count()).filter(|&light| x.reciprocal(light) > 0.0);
+            let nth = rng.below(splits.clone().count());
+            let light = splits.clone().nth(nth).ok_or(Failure::NoSubpath)?;
+            let tape = Tape::of(scene, x, light, rng).ok_or(Failure::NoSubpath)?;
+            right.rebuild(scene, (x, light, &tape), rng, draft, y)?;
+            Ok(Proposal { ratio: x.density_sum() / y.density_sum(), kept_light: 0, kept_eye: 1 })
+        }),
+        mutant("primary: a direction is not inverted", move |args| {
+            spoilt(right, args, |_, tape| {
+                tape.rows_mut().filter(|(_, row, _)| *row == 1).for_each(|(.., u)| u[1] = 0.5);
+            })
+        }),
+        event,
+        again,
     ]
 }

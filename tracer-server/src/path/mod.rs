@@ -12,6 +12,7 @@ mod failure;
 mod numbers;
 mod record;
 mod resample;
+mod tape;
 mod vertex;
 mod walk;
 
@@ -20,6 +21,7 @@ pub use bidirectional::BidirectionalSampler;
 pub use failure::Failure;
 pub use numbers::{Numbers, ROW, Strand};
 pub use resample::{Draft, Range, end_on_light, open_for_connection, resample};
+pub use tape::Tape;
 pub use vertex::Vertex;
 pub use walk::{camera_vertex, emit, extend, invert_emission, light_vertex, scatter};
 

@@ -1,0 +1,87 @@
+//! The numbers that would have made a path.
+
+use arrayvec::ArrayVec;
+
+use super::numbers::ROW;
+use super::{MAX_VERTICES, Path, Strand, invert_emission};
+use crate::bsdf::Scatter as _;
+use crate::math::Rng;
+use crate::scene::Tracer;
+
+/// Rows of numbers for the walks of a path from both ends, in the order of [`Strand`]'s rows.
+#[derive(Clone, Debug, Default)]
+pub struct Tape {
+    light: ArrayVec<[f64; ROW], MAX_VERTICES>,
+    eye: ArrayVec<[f64; ROW], MAX_VERTICES>,
+}
+
+impl Tape {
+    /// Numbers from which two walks make `x` with `light` vertices on the light side.
+    ///
+    /// The inverse of the walks: where many numbers would do, as for the choice of an event or of a
+    /// light, `rng` draws one uniformly. `None` where the split cannot make the path.
+    pub fn of(scene: &Tracer<'_>, x: &Path, light: usize, rng: &mut Rng) -> Option<Self> {
+        let mut tape = Self::default();
+        tape.invert_light_walk(scene, x, light, rng)?;
+        tape.invert_eye_walk(scene, x, x.edge_count() - light, rng);
+        Some(tape)
+    }
+
+    fn invert_light_walk(
+        &mut self,
+        scene: &Tracer<'_>,
+        x: &Path,
+        count: usize,
+        rng: &mut Rng,
+    ) -> Option<()> {
+        let start = x.vertices().first()?;
+        if count > 0 {
+            let [choice, u, v] = scene.invert_light(start.primitive, start.position, rng)?;
+            self.light.push([choice, u, v, 0.0]);
+        }
+        if count > 1 {
+            let [u, v] = invert_emission(start, x.edges()[0].direction);
+            self.light.push([u, v, 0.0, 0.0]);
+        }
+        // The event of the last vertex of a walk is no draw: the connection decides it.
+        for j in 1..count.saturating_sub(1) {
+            let (back, onward) = (-x.edges()[j - 1].direction, x.edges()[j].direction);
+            let at = &x.vertices()[j];
+            let bsdf = scene.bsdf(at.material);
+            let [event, u, v] = bsdf.invert(at.normal, back, onward, at.event, rng);
+            self.light.push([event, u, v, 0.0]);
+        }
+        Some(())
+    }
+
+    fn invert_eye_walk(&mut self, scene: &Tracer<'_>, x: &Path, count: usize, rng: &mut Rng) {
+        if count > 0 {
+            self.eye.push([x.film().x, x.film().y, 0.0, 0.0]);
+        }
+        let k = x.edge_count();
+        for j in (k - count + 1..k).rev() {
+            let (back, onward) = (x.edges()[j].direction, -x.edges()[j - 1].direction);
+            let at = &x.vertices()[j];
+            let bsdf = scene.bsdf(at.material);
+            let [event, u, v] = bsdf.invert(at.normal, back, onward, at.event, rng);
+            self.eye.push([event, u, v, 0.0]);
+        }
+    }
+
+    /// The row number `row` of a walk; `None` beyond its end.
+    #[inline]
+    pub fn row(&self, strand: Strand, row: usize) -> Option<&[f64; ROW]> {
+        match strand {
+            Strand::Light => self.light.get(row),
+            Strand::Eye => self.eye.get(row),
+            Strand::Connection => None,
+        }
+    }
+
+    /// All rows of both walks, to be spoilt.
+    #[cfg(test)]
+    pub(crate) fn rows_mut(&mut self) -> impl Iterator<Item = (Strand, usize, &mut [f64; ROW])> {
+        let light = self.light.iter_mut().enumerate().map(|(i, row)| (Strand::Light, i, row));
+        light.chain(self.eye.iter_mut().enumerate().map(|(i, row)| (Strand::Eye, i, row)))
+    }
+}
