@@ -5,6 +5,8 @@ use glam::{Mat4, UVec4, Vec4};
 
 /// Strategies that have a colour of their own; later ones share the last.
 pub const PALETTE_SIZE: usize = 16;
+/// Colours from low to high, between which the shader interpolates.
+pub const RAMP_SIZE: usize = 8;
 
 /// What every pipeline knows of the picture being drawn; twin of `Frame`, whose comments say what
 /// each component is.
@@ -27,10 +29,18 @@ pub struct FrameUniforms {
     pub tone: Vec4,
     /// Opacity, opacity of surfaces that face away, wireframe strength, shading.
     pub surface: Vec4,
-    /// Newest ordinal, colour mode.
+    /// Newest ordinal, colour mode, 1 for dots at ends only, 1 for logarithmic scales.
     pub count: UVec4,
-    /// One linear colour a strategy.
+    /// The plane whose positive side is drawn.
+    pub clip: Vec4,
+    /// Depth cue: strength, begin, inverse reach; relative opacity of what the filter leaves out.
+    pub cue: Vec4,
+    /// The linear colour of all paths where colour says nothing.
+    pub constant: Vec4,
+    /// Linear colours that stay apart.
     pub palette: [Vec4; PALETTE_SIZE],
+    /// Linear colours from low to high.
+    pub ramp: [Vec4; RAMP_SIZE],
 }
 
 /// One vertex of a polyline: 24 bytes.
@@ -43,7 +53,7 @@ pub struct LinePoint {
     pub color: [u8; 4],
     /// Number of the path since the viewer started, wrapping.
     pub ordinal: u32,
-    /// Role bits, strategy, place along the path in 255ths, number of edges.
+    /// Role bits and kind, strategy, colours of chain and class, number of edges.
     pub info: [u8; 4],
 }
 
@@ -110,6 +120,10 @@ pub mod role {
     pub const LAST: u8 = 2;
     /// Part of a drawing aid rather than of a path: its colour is taken as it is.
     pub const ANNOTATION: u8 = 4;
+    /// The filter leaves the path out.
+    pub const DIMMED: u8 = 8;
+    /// The kind of a vertex lies above the bits, this far up.
+    pub const KIND_SHIFT: u8 = 4;
 }
 
 /// Values of the last component of [`MeshVertex::color`].

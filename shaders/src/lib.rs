@@ -8,7 +8,7 @@ mod layout;
 mod tests;
 
 pub use layout::{
-    Attribute, AttributeFormat, FrameUniforms, LinePoint, MeshVertex, PALETTE_SIZE,
+    Attribute, AttributeFormat, FrameUniforms, LinePoint, MeshVertex, PALETTE_SIZE, RAMP_SIZE,
     decode_radiance, encode_radiance, material_kind, role,
 };
 

@@ -58,7 +58,11 @@ fn frame_uniforms_are_laid_out_alike() {
             ("tone", offset_of!(FrameUniforms, tone)),
             ("surface", offset_of!(FrameUniforms, surface)),
             ("count", offset_of!(FrameUniforms, count)),
+            ("clip", offset_of!(FrameUniforms, clip)),
+            ("cue", offset_of!(FrameUniforms, cue)),
+            ("constant", offset_of!(FrameUniforms, constant)),
             ("palette", offset_of!(FrameUniforms, palette)),
+            ("ramp", offset_of!(FrameUniforms, ramp)),
         ];
         assert_eq!(offsets.len(), twin.len(), "{}: members of Frame", shader.name);
         for (name, offset) in twin {
@@ -154,6 +158,8 @@ fn codes_have_one_meaning() {
     assert_eq!(constant(&lines, "ROLE_START"), f64::from(role::START), "start");
     assert_eq!(constant(&lines, "ROLE_LAST"), f64::from(role::LAST), "last");
     assert_eq!(constant(&lines, "ROLE_ANNOTATION"), f64::from(role::ANNOTATION), "annotation");
+    assert_eq!(constant(&lines, "ROLE_DIMMED"), f64::from(role::DIMMED), "dimmed");
+    assert_eq!(constant(&lines, "KIND_SHIFT"), f64::from(role::KIND_SHIFT), "kind");
     let stops = (layout::CODE_STOPS, layout::CODE_LOWEST);
     assert_eq!(constant(&lines, "CODE_STOPS"), f64::from(stops.0), "range of radiance");
     assert_eq!(constant(&lines, "CODE_LOWEST"), f64::from(stops.1), "lowest radiance");

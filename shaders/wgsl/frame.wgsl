@@ -18,10 +18,20 @@ struct Frame {
     tone: vec4<f32>,
     // Surfaces: opacity, opacity of those that face away, wireframe strength, 1 for shading.
     surface: vec4<f32>,
-    // Ordinal of the newest path, colour mode (0 radiance, 1 strategy, 2 length), unused twice.
+    // Ordinal of the newest path, colour mode (see `path_color`), 1 to draw dots at the two ends of a
+    // path only, 1 for logarithmic scales.
     count: vec4<u32>,
-    // One colour a strategy, linear.
+    // What lies on the positive side of this plane is drawn: dot(xyz, position) + w >= 0.
+    clip: vec4<f32>,
+    // Depth cue: strength, distance where it begins, 1 / (distance over which it grows); then the
+    // relative opacity of paths that the filter does not match.
+    cue: vec4<f32>,
+    // The colour of all paths where colour says nothing, linear.
+    constant: vec4<f32>,
+    // Colours that stay apart: strategies, chains, classes, kinds; linear.
     palette: array<vec4<f32>, 16>,
+    // Colours from low to high, linear.
+    ramp: array<vec4<f32>, 8>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

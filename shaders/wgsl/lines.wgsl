@@ -7,6 +7,8 @@
 const ROLE_START: u32 = 1u;
 const ROLE_LAST: u32 = 2u;
 const ROLE_ANNOTATION: u32 = 4u;
+const ROLE_DIMMED: u32 = 8u;
+const KIND_SHIFT: u32 = 4u;
 
 // Twin: `LinePoint`, at locations 0 to 3 and again at 4 to 7.
 struct Segment {
@@ -14,7 +16,7 @@ struct Segment {
     // rgb: square root of the colour over its largest channel; a: code of the radiance.
     @location(1) color_a: vec4<f32>,
     @location(2) ordinal_a: u32,
-    // Role bits, strategy, place along the path in 255ths, number of edges.
+    // Role bits and kind of vertex, strategy, chain and class colours, number of edges.
     @location(3) info_a: vec4<u32>,
     @location(4) position_b: vec3<f32>,
     @location(5) color_b: vec4<f32>,
@@ -42,11 +44,18 @@ const ANNOTATION_WIDTH: f32 = 1.25;
 const START_TINT = vec3<f32>(1.0, 0.55, 0.10);
 const END_TINT = vec3<f32>(0.16, 0.48, 1.0);
 
+// Where the ramp of lengths ends, in edges.
+const LONGEST: f32 = 10.0;
+
+fn ramp(place: f32) -> vec3<f32> {
+    let x = clamp(place, 0.0, 1.0) * 7.0;
+    let i = u32(min(x, 6.0));
+    return mix(frame.ramp[i].rgb, frame.ramp[i + 1u].rgb, x - f32(i));
+}
+
 fn hue_of_length(edges: u32) -> vec3<f32> {
-    // Short paths blue, long ones red, around the colour circle in the sense of a thermometer.
-    let h = 0.66 * (1.0 - clamp(f32(edges) - 1.0, 0.0, 9.0) / 9.0);
-    let rgb = abs(fract(vec3<f32>(h, h + 2.0 / 3.0, h + 1.0 / 3.0)) * 6.0 - 3.0) - 1.0;
-    return clamp(rgb, vec3<f32>(0.0), vec3<f32>(1.0)) * 0.85 + 0.1;
+    let e = max(f32(edges), 1.0);
+    return ramp(select((e - 1.0) / (LONGEST - 1.0), log2(e) / log2(LONGEST), frame.count.w == 1u));
 }
 
 fn radiance_code_to_brightness(code: f32) -> f32 {
@@ -54,14 +63,36 @@ fn radiance_code_to_brightness(code: f32) -> f32 {
     return clamp((stops - frame.tone.x) * frame.tone.y, 0.0, 1.0);
 }
 
-fn path_color(color: vec4<f32>, info: vec4<u32>) -> vec3<f32> {
-    if frame.count.y == 1u {
-        return frame.palette[min(info.y, 15u)].rgb;
+fn hue_of_luminance(code: f32) -> vec3<f32> {
+    let place = radiance_code_to_brightness(code);
+    // Linear in the radiance itself: each stop below the brightest halves it.
+    let linear = exp2((place - 1.0) / max(frame.tone.y, 1e-6));
+    return ramp(select(linear, place, frame.count.w == 1u));
+}
+
+// 1 for the newest path, 1/e after the fading age.
+fn freshness(ordinal: u32) -> f32 {
+    return exp(-f32(frame.count.x - ordinal) / max(frame.fade.x, 1.0));
+}
+
+fn path_color(color: vec4<f32>, ordinal: u32, info: vec4<u32>) -> vec3<f32> {
+    switch frame.count.y {
+        case 1u: { return frame.palette[min(info.y, 15u)].rgb; }
+        case 2u: { return hue_of_length(info.w); }
+        case 3u: { return hue_of_luminance(color.a); }
+        case 4u: { return ramp(freshness(ordinal)); }
+        case 5u: { return frame.palette[info.x >> KIND_SHIFT].rgb; }
+        case 6u: { return frame.palette[info.z & 15u].rgb; }
+        case 7u: { return frame.palette[info.z >> 4u].rgb; }
+        case 8u: { return frame.constant.rgb; }
+        default: { return color.rgb * color.rgb; }
     }
-    if frame.count.y == 2u {
-        return hue_of_length(info.w);
-    }
-    return color.rgb * color.rgb;
+}
+
+// How much is left of a line's opacity at a distance along the view.
+fn cue(distance: f32) -> f32 {
+    let depth = clamp((distance - frame.cue.y) * frame.cue.z, 0.0, 1.0);
+    return 1.0 - 0.95 * frame.cue.x * depth;
 }
 
 // Colour and opacity of one end of a segment.
@@ -69,15 +100,21 @@ fn shade(color: vec4<f32>, ordinal: u32, info: vec4<u32>) -> vec4<f32> {
     if (info.x & ROLE_ANNOTATION) != 0u {
         return vec4<f32>(color.rgb * color.rgb, color.a);
     }
-    let age = f32(frame.count.x - ordinal);
-    let fresh = mix(frame.fade.y, 1.0, exp(-age / max(frame.fade.x, 1.0)));
-    var rgb = path_color(color, info);
+    let fresh = mix(frame.fade.y, 1.0, freshness(ordinal));
+    var rgb = path_color(color, ordinal, info);
     if frame.tone.w > 0.0 && (info.x & ROLE_START) != 0u {
         rgb = mix(rgb, START_TINT, 0.8);
     } else if frame.tone.w > 0.0 && (info.x & ROLE_LAST) != 0u {
         rgb = mix(rgb, END_TINT, 0.8);
     }
-    let bright = mix(0.22, 1.0, radiance_code_to_brightness(color.a));
+    // Where colour does not say how bright a path is, opacity must not suggest it.
+    var bright = 0.8;
+    if frame.count.y == 0u {
+        bright = mix(0.22, 1.0, radiance_code_to_brightness(color.a));
+    }
+    if (info.x & ROLE_DIMMED) != 0u {
+        bright *= frame.cue.w;
+    }
     return vec4<f32>(rgb, frame.line.y * fresh * bright);
 }
 
@@ -87,15 +124,29 @@ fn line_vertex(s: Segment, corner: u32) -> Fragment {
     if (s.info_a.x & ROLE_LAST) != 0u {
         return out;
     }
+    let side_a = dot(frame.clip.xyz, s.position_a) + frame.clip.w;
+    let side_b = dot(frame.clip.xyz, s.position_b) + frame.clip.w;
+    if side_a < 0.0 && side_b < 0.0 {
+        return out;
+    }
     var a = frame.view_projection * vec4<f32>(s.position_a, 1.0);
     var b = frame.view_projection * vec4<f32>(s.position_b, 1.0);
     var color_a = shade(s.color_a, s.ordinal_a, s.info_a);
     var color_b = shade(s.color_b, s.ordinal_b, s.info_b);
+    if side_a < 0.0 {
+        a = mix(a, b, side_a / (side_a - side_b));
+    } else if side_b < 0.0 {
+        b = mix(b, a, side_b / (side_b - side_a));
+    }
     let annotation = (s.info_a.x & ROLE_ANNOTATION) != 0u;
     if !annotation && (s.info_b.x & ROLE_LAST) != 0u {
         // All paths end in one point, the pinhole: thinned out towards it, or it would blind.
         color_a.a *= mix(frame.line.w, 1.0, 0.22);
         color_b.a *= frame.line.w;
+    }
+    if !annotation {
+        color_a.a *= cue(a.w);
+        color_b.a *= cue(b.w);
     }
     let near = frame.eye.w;
     if a.w < near && b.w < near {
@@ -121,7 +172,8 @@ fn line_vertex(s: Segment, corner: u32) -> Fragment {
 
     let wanted = select(frame.line.x, ANNOTATION_WIDTH, annotation);
     let width = max(wanted, 1.0);
-    let reach = 0.5 * width + 1.0;
+    // Half a pixel beyond the edge the coverage is zero; software pays for every fragment.
+    let reach = 0.5 * width + 0.5;
     let side = select(-1.0, 1.0, (corner & 1u) == 1u);
     let at_b = corner >= 2u;
     let clip = select(a, b, at_b);
@@ -156,10 +208,14 @@ fn vs_dot(s: Segment, @builtin(vertex_index) corner: u32) -> Fragment {
     out.position = NOWHERE;
     let starts = (s.info_a.x & ROLE_START) != 0u;
     let ends = (s.info_a.x & ROLE_LAST) != 0u;
-    let radius = select(frame.tone.z, frame.fade.w, starts);
+    // The lens is one point for all paths; their visible end is the vertex before it.
+    let seen = (s.info_b.x & ROLE_LAST) != 0u && !ends;
+    let wanted = frame.count.z == 0u || starts || seen;
+    let radius = select(0.0, select(frame.tone.z, frame.fade.w, starts), wanted);
     let clip = frame.view_projection * vec4<f32>(s.position_a, 1.0);
     let skipped = (s.info_a.x & ROLE_ANNOTATION) != 0u || ends || radius <= 0.0;
-    if skipped || clip.w < frame.eye.w {
+    let clipped = dot(frame.clip.xyz, s.position_a) + frame.clip.w < 0.0;
+    if skipped || clipped || clip.w < frame.eye.w {
         return out;
     }
     let reach = radius + 1.0;
@@ -167,8 +223,11 @@ fn vs_dot(s: Segment, @builtin(vertex_index) corner: u32) -> Fragment {
         select(-reach, reach, (corner & 1u) == 1u),
         select(-reach, reach, corner >= 2u),
     );
-    let color = shade(s.color_a, s.ordinal_a, s.info_a);
-    let alpha = min(color.a * 1.6, 1.0);
+    var color = shade(s.color_a, s.ordinal_a, s.info_a);
+    if frame.count.z == 1u && frame.tone.w > 0.0 && seen {
+        color = vec4<f32>(mix(color.rgb, END_TINT, 0.8), color.a);
+    }
+    let alpha = min(color.a * 1.6 * cue(clip.w), 1.0);
     let shift = offset / (0.5 * frame.viewport.xy);
     out.position = vec4<f32>(clip.xy + shift * clip.w, clip.z * DEPTH_BIAS, clip.w);
     out.color = vec4<f32>(color.rgb * alpha, alpha);

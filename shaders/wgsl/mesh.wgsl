@@ -91,8 +91,15 @@ fn lit(in: Surface, front: bool) -> Lit {
     return out;
 }
 
+fn is_clipped(in: Surface) -> bool {
+    return dot(frame.clip.xyz, in.position) + frame.clip.w < 0.0;
+}
+
 @fragment
 fn fs_opaque(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    if is_clipped(in) {
+        discard;
+    }
     let surface = lit(in, front);
     if surface.alpha < 0.999 {
         discard;
@@ -102,6 +109,9 @@ fn fs_opaque(in: Surface, @builtin(front_facing) front: bool) -> @location(0) ve
 
 @fragment
 fn fs_translucent(in: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    if is_clipped(in) {
+        discard;
+    }
     let surface = lit(in, front);
     if surface.alpha >= 0.999 || surface.alpha < 0.002 {
         discard;

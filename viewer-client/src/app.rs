@@ -9,13 +9,13 @@ use crate::camera::{Bounds, ViewCamera};
 use crate::command::{CameraCommand, CloudCommand, Command};
 use crate::connection::{Delivery, Link};
 use crate::film::Film;
-use crate::gpu::{Quality, Renderer};
+use crate::gpu::{Quality, Renderer, Uploaded};
 use crate::keys;
 use crate::model::{Model, corners, drawing_aids};
 use crate::panel::{self, Panel, Slot};
 use crate::settings::Settings;
 use crate::status::{LinkState, Status};
-use crate::store::{PAGE_POINTS, Store};
+use crate::store::{Drawn, PAGE_POINTS, Store};
 use crate::theme;
 use crate::world::World;
 
@@ -208,6 +208,9 @@ impl Viewer {
                 match command {
                     CloudCommand::Clear => self.store.clear(),
                     CloudCommand::Budget(mib) => self.store.set_budget(budget_bytes(mib)),
+                    CloudCommand::Dim(x) => {
+                        self.store.set_drawn(if x > 0.0 { Drawn::All } else { Drawn::Matched });
+                    }
                     _ => {}
                 }
             }
@@ -281,13 +284,20 @@ impl Viewer {
             renderer.retain_from(u64::MAX);
         }
         renderer.retain_from(self.store.first_serial());
-        upload_paths(&self.store, renderer)
+        let more = upload_paths(&self.store, renderer);
+        renderer.set_uploading(more);
+        more
     }
 
     fn aids(&self) -> Vec<shaders::LinePoint> {
         let Some(Model { bounds, .. }) = self.model else { return Vec::new() };
         let camera = self.camera.render_camera().filter(|_| !self.camera.is_through());
         drawing_aids(bounds, camera, self.camera.up(), self.settings.scene.aids)
+    }
+
+    /// Shows paths without a scene: only the box round them is known.
+    pub fn show_bounds(&mut self, bounds: Bounds) {
+        self.set_model(Some(Model { mesh: common::SceneMesh::default(), bounds }));
     }
 
     /// The box round the scene, once it has come.
@@ -301,17 +311,18 @@ fn upload_paths(store: &Store, renderer: &mut Renderer) -> bool {
     let mut room = UPLOAD_POINTS;
     let mut points = Vec::new();
     for page in store.pages().rev() {
+        let whole = Uploaded { revision: page.revision(), paths: page.paths().len() };
         let there = renderer.uploaded(page.serial());
-        if there == page.point_count() {
+        if there == Some(whole) {
             continue;
         }
         if room == 0 {
             return true;
         }
-        let skip = page.paths().partition_point(|path| (path.first as usize) < there);
+        let skip = there.filter(|t| t.revision == whole.revision).map_or(0, |t| t.paths);
         points.clear();
-        points.extend(page.points(skip));
-        renderer.append_points(page.serial(), &points);
+        points.extend(page.points(skip, store.drawn()));
+        renderer.append_points(page.serial(), whole, &points);
         room = room.saturating_sub(points.len());
     }
     false

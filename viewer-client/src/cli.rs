@@ -13,7 +13,8 @@ Examples:
   viewer-client --scene caustic          another one, or a scene file
   viewer-client 127.0.0.1:50061          a running `tracer-server serve`
   viewer-client --headless --screenshot-to view.png --wait-paths 20000
-  viewer-client watch 127.0.0.1:50061 --count 10";
+  viewer-client watch 127.0.0.1:50061 --count 10
+  viewer-client bench --paths 10000,100000";
 
 /// Shows the scene, its light paths, and the picture they make.
 #[derive(Debug, Parser)]
@@ -39,6 +40,8 @@ pub struct Cli {
 pub enum Action {
     /// Prints what a daemon sends, one line a batch of paths.
     Watch(WatchArgs),
+    /// Measures how fast random paths are drawn, without a window or a daemon.
+    Bench(BenchArgs),
 }
 
 /// How to view.
@@ -82,6 +85,29 @@ pub struct WatchArgs {
     /// Ends after this many batches.
     #[arg(long, value_name = "N")]
     pub count: Option<u64>,
+}
+
+/// What to measure.
+#[derive(Clone, Debug, Args)]
+pub struct BenchArgs {
+    /// How many paths, one measurement each.
+    #[arg(
+        long,
+        value_name = "N,...",
+        default_value = "10000,100000,1000000",
+        value_delimiter = ',',
+        value_parser = clap::value_parser!(u32).range(1..=10_000_000)
+    )]
+    pub paths: Vec<u32>,
+    /// Vertices a path.
+    #[arg(long, value_name = "K", default_value = "6", value_parser = clap::value_parser!(u8).range(2..=64))]
+    pub vertices: u8,
+    /// Size of the picture in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
+    pub size: [u32; 2],
+    /// One JSON object a line.
+    #[arg(long)]
+    pub json: bool,
 }
 
 fn long_help() -> String {

@@ -95,7 +95,7 @@ pub const BINDINGS: &[Binding] = &[
     bind(plain(Key::Backspace), Group::Paths, "forget every path", |_| {
         Command::Cloud(CloudCommand::Clear)
     }),
-    bind(plain(Key::C), Group::Paths, "colour: radiance, strategy, length", |world| {
+    bind(plain(Key::C), Group::Paths, "colour by the next property", |world| {
         let next = after(&ColorMode::ALL, world.settings.cloud.color);
         Command::Cloud(CloudCommand::Color(next))
     }),

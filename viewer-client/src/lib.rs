@@ -4,6 +4,7 @@
 //! and [`panel`]. Everything the user does is a [`command`].
 
 pub mod app;
+pub mod bench;
 pub mod camera;
 pub mod cli;
 pub mod command;

@@ -8,7 +8,7 @@ use crate::app::Viewer;
 use crate::cli::{Action, Cli, ViewArgs};
 use crate::headless::Wait;
 use crate::status::Status;
-use crate::{embedded, headless, script, watch, window};
+use crate::{bench, embedded, headless, script, watch, window};
 
 /// A picture is taken after this long when nothing else is asked for.
 const DEFAULT_WAIT: Duration = Duration::from_secs(5);
@@ -17,6 +17,7 @@ const DEFAULT_WAIT: Duration = Duration::from_secs(5);
 pub fn run(cli: Cli) -> anyhow::Result<()> {
     match cli.action {
         Some(Action::Watch(args)) => watch::run(&args),
+        Some(Action::Bench(args)) => bench::run(&args),
         None => view(&cli.view),
     }
 }

@@ -1,8 +1,8 @@
 //! What the user has chosen; panels read it, [`crate::command::Command`]s change it.
 
 use crate::command::{
-    CloudCommand, ColorMode, ImageCommand, LayoutCommand, PanelName, SceneCommand, Shading,
-    ThemeName,
+    ClipSide, CloudCommand, ColorMode, ColorScale, ImageCommand, LayoutCommand, Marks, PanelName,
+    SceneCommand, Shading, ThemeName,
 };
 
 /// Every choice.
@@ -41,6 +41,14 @@ pub struct CloudSettings {
     pub ends: bool,
     /// Radius of the dots at inner vertices in pixels.
     pub dots: f32,
+    /// What is drawn of a path.
+    pub marks: Marks,
+    /// How values become places on the ramp of colours.
+    pub scale: ColorScale,
+    /// How much distance dims paths, from 0 to 1.
+    pub cue: f32,
+    /// Relative opacity of paths that the filter leaves out; 0 hides them.
+    pub dim: f32,
 }
 
 impl Default for CloudSettings {
@@ -56,6 +64,10 @@ impl Default for CloudSettings {
             color: ColorMode::Radiance,
             ends: true,
             dots: 0.0,
+            marks: Marks::Lines,
+            scale: ColorScale::Log,
+            cue: 0.0,
+            dim: 0.1,
         }
     }
 }
@@ -75,6 +87,10 @@ impl CloudSettings {
             CloudCommand::Color(mode) => self.color = mode,
             CloudCommand::Ends(switch) => switch.apply(&mut self.ends),
             CloudCommand::Dots(pixels) => self.dots = pixels,
+            CloudCommand::Marks(marks) => self.marks = marks,
+            CloudCommand::Scale(scale) => self.scale = scale,
+            CloudCommand::Cue(x) => self.cue = x,
+            CloudCommand::Dim(x) => self.dim = x,
         }
     }
 }
@@ -90,6 +106,10 @@ pub struct SceneSettings {
     pub cutaway: bool,
     /// Lines that belong to no path.
     pub aids: DrawingAids,
+    /// What a plane cuts away.
+    pub clip: ClipSide,
+    /// Where the plane lies, from 0 to 1 across the scene.
+    pub cut: f32,
 }
 
 /// Lines that belong to no path.
@@ -104,7 +124,14 @@ pub struct DrawingAids {
 impl Default for SceneSettings {
     fn default() -> Self {
         let aids = DrawingAids { camera: true, grid: true };
-        Self { shading: Shading::Shaded, opacity: 1.0, cutaway: true, aids }
+        Self {
+            shading: Shading::Shaded,
+            opacity: 1.0,
+            cutaway: true,
+            aids,
+            clip: ClipSide::Off,
+            cut: 0.5,
+        }
     }
 }
 
@@ -117,6 +144,8 @@ impl SceneSettings {
             SceneCommand::Cutaway(switch) => switch.apply(&mut self.cutaway),
             SceneCommand::Camera(switch) => switch.apply(&mut self.aids.camera),
             SceneCommand::Grid(switch) => switch.apply(&mut self.aids.grid),
+            SceneCommand::Clip(side) => self.clip = side,
+            SceneCommand::Cut(place) => self.cut = place,
         }
     }
 }

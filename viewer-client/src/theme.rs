@@ -1,7 +1,7 @@
 //! Colours, spacing and type of the interface.
 
 use egui::{Color32, CornerRadius, FontId, Margin, Stroke, TextStyle, Theme, Visuals, vec2};
-use shaders::PALETTE_SIZE;
+use shaders::{PALETTE_SIZE, RAMP_SIZE};
 
 /// The colour of things that can be acted upon.
 pub const ACCENT: Color32 = Color32::from_rgb(92, 156, 255);
@@ -32,6 +32,36 @@ const STRATEGIES: [[u8; 3]; 8] = [
 pub fn strategy_color(index: usize) -> Color32 {
     let [r, g, b] = STRATEGIES[index.min(PALETTE_SIZE - 1) % STRATEGIES.len()];
     Color32::from_rgb(r, g, b)
+}
+
+/// From low to high on dark ground: blue to yellow, ever lighter, so that it also reads in grey and
+/// with any kind of colour vision.
+const RAMP_ON_DARK: [[u8; 3]; RAMP_SIZE] = [
+    [84, 92, 190],
+    [64, 126, 196],
+    [52, 156, 182],
+    [58, 182, 150],
+    [104, 204, 112],
+    [168, 220, 80],
+    [222, 228, 72],
+    [255, 238, 130],
+];
+/// The same on light ground, where the lightest must still be seen.
+const RAMP_ON_LIGHT: [[u8; 3]; RAMP_SIZE] = [
+    [68, 1, 84],
+    [70, 50, 126],
+    [54, 92, 141],
+    [39, 127, 142],
+    [31, 150, 120],
+    [74, 170, 80],
+    [140, 172, 40],
+    [190, 160, 0],
+];
+
+/// The colours from low to high.
+pub fn ramp(dark: bool) -> [Color32; RAMP_SIZE] {
+    let ramp = if dark { RAMP_ON_DARK } else { RAMP_ON_LIGHT };
+    ramp.map(|[r, g, b]| Color32::from_rgb(r, g, b))
 }
 
 /// Sets up both themes.

@@ -62,7 +62,7 @@ pub fn run(viewer: Viewer, address: String) -> anyhow::Result<()> {
 }
 
 /// Programs that stand in for a graphics card spend most of their time on samples.
-fn quality(gpu: &egui_wgpu::RenderState) -> Quality {
+pub(crate) fn quality(gpu: &egui_wgpu::RenderState) -> Quality {
     match gpu.adapter.get_info().device_type {
         wgpu::DeviceType::Cpu => Quality::Fast,
         _ => Quality::Smooth,

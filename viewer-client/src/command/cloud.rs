@@ -30,6 +30,65 @@ pub enum CloudCommand {
     Ends(Switch),
     /// Radius of the dots at inner vertices, in pixels; 0 for none.
     Dots(f32),
+    /// What is drawn of a path.
+    Marks(Marks),
+    /// How values become places on the ramp of colours.
+    Scale(ColorScale),
+    /// How much distance dims paths.
+    Cue(f32),
+    /// Relative opacity of paths that the filter leaves out; 0 hides them.
+    Dim(f32),
+}
+
+/// What is drawn of a path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Marks {
+    /// Its edges, and dots as wanted.
+    #[default]
+    Lines,
+    /// Its vertices only.
+    Vertices,
+    /// The vertex on the light and the one that the camera sees.
+    Ends,
+}
+
+impl Marks {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Lines, Self::Vertices, Self::Ends];
+}
+
+impl fmt::Display for Marks {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Lines => "lines",
+            Self::Vertices => "vertices",
+            Self::Ends => "ends",
+        })
+    }
+}
+
+/// How values become places on the ramp of colours.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColorScale {
+    /// Equal factors are equal steps.
+    #[default]
+    Log,
+    /// Equal differences are equal steps.
+    Linear,
+}
+
+impl ColorScale {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Log, Self::Linear];
+}
+
+impl fmt::Display for ColorScale {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Log => "log",
+            Self::Linear => "linear",
+        })
+    }
 }
 
 /// What the colour of a path says.
@@ -40,13 +99,40 @@ pub enum ColorMode {
     Radiance,
     /// The strategy whose proposal it was.
     Strategy,
-    /// Its number of edges: blue for short, red for long.
+    /// Its number of edges, on a ramp.
     Length,
+    /// Its luminance, on a ramp.
+    Luminance,
+    /// How many paths have come since, on a ramp.
+    Age,
+    /// The kind of each vertex.
+    Kind,
+    /// Its chain.
+    Chain,
+    /// Its class, such as `LSDE`.
+    Class,
+    /// Nothing: all paths alike.
+    Constant,
 }
 
 impl ColorMode {
     /// All, in the order of the shader's codes.
-    pub const ALL: [Self; 3] = [Self::Radiance, Self::Strategy, Self::Length];
+    pub const ALL: [Self; 9] = [
+        Self::Radiance,
+        Self::Strategy,
+        Self::Length,
+        Self::Luminance,
+        Self::Age,
+        Self::Kind,
+        Self::Chain,
+        Self::Class,
+        Self::Constant,
+    ];
+
+    /// True when the colours come from the ramp, and the scale says how.
+    pub fn has_scale(self) -> bool {
+        matches!(self, Self::Length | Self::Luminance)
+    }
 }
 
 impl fmt::Display for ColorMode {
@@ -55,6 +141,12 @@ impl fmt::Display for ColorMode {
             Self::Radiance => "radiance",
             Self::Strategy => "strategy",
             Self::Length => "length",
+            Self::Luminance => "luminance",
+            Self::Age => "age",
+            Self::Kind => "kind",
+            Self::Chain => "chain",
+            Self::Class => "class",
+            Self::Constant => "constant",
         })
     }
 }
@@ -68,9 +160,16 @@ pub(super) const FORMS: &[Form] = &[
     ("cloud fade PATHS", "after how many newer paths a path has faded"),
     ("cloud shown PATHS", "how many of the newest paths are drawn"),
     ("cloud budget MIB", "memory for paths"),
-    ("cloud color radiance|strategy|length", "what the colour says"),
+    (
+        "cloud color radiance|strategy|length|luminance|age|kind|chain|class|constant",
+        "what the colour says",
+    ),
     ("cloud ends on|off|toggle", "tint the light end and the camera end"),
     ("cloud dots PIXELS", "radius of the dots at inner vertices, 0 for none"),
+    ("cloud marks lines|vertices|ends", "what is drawn of a path"),
+    ("cloud scale log|linear", "how lengths and luminances become colours"),
+    ("cloud cue X", "how much distance dims paths (0 to 1)"),
+    ("cloud dim X", "relative opacity of what the filter leaves out; 0 hides it"),
 ];
 
 impl fmt::Display for CloudCommand {
@@ -87,6 +186,10 @@ impl fmt::Display for CloudCommand {
             Self::Color(mode) => write!(f, "color {mode}"),
             Self::Ends(switch) => write!(f, "ends {switch}"),
             Self::Dots(pixels) => write!(f, "dots {pixels}"),
+            Self::Marks(marks) => write!(f, "marks {marks}"),
+            Self::Scale(scale) => write!(f, "scale {scale}"),
+            Self::Cue(x) => write!(f, "cue {x}"),
+            Self::Dim(x) => write!(f, "dim {x}"),
         }
     }
 }
@@ -103,6 +206,10 @@ pub(super) fn parse(words: &mut Words<'_>) -> Result<CloudCommand, CommandError>
         "budget" => CloudCommand::Budget(words.count("MIB", 8..=65_536)?),
         "color" => CloudCommand::Color(words.choice("MODE", &ColorMode::ALL)?),
         "ends" => CloudCommand::Ends(words.switch()?),
+        "marks" => CloudCommand::Marks(words.choice("MARKS", &Marks::ALL)?),
+        "scale" => CloudCommand::Scale(words.choice("SCALE", &ColorScale::ALL)?),
+        "cue" => CloudCommand::Cue(words.number("X", 0.0..=1.0)?),
+        "dim" => CloudCommand::Dim(words.number("X", 0.0..=1.0)?),
         "dots" => CloudCommand::Dots(words.number("PIXELS", 0.0..=20.0)?),
         other => return Err(CommandError::Unknown(format!("cloud {other}"))),
     })

@@ -12,10 +12,10 @@ mod scene;
 mod words;
 
 pub use camera::{CameraCommand, Side};
-pub use cloud::{CloudCommand, ColorMode};
+pub use cloud::{CloudCommand, ColorMode, ColorScale, Marks};
 pub use image::ImageCommand;
 pub use layout::{LayoutCommand, PanelName, ThemeName};
-pub use scene::{SceneCommand, Shading};
+pub use scene::{ClipSide, SceneCommand, Shading};
 pub use words::{CommandError, Switch};
 
 use std::fmt;
@@ -101,9 +101,9 @@ mod tests {
         camera frame\ncamera view front\n\
         cloud freeze toggle\ncloud clear\ncloud width 2.5\ncloud opacity 0.5\ncloud hidden 0.1\n\
         cloud fade 500\ncloud shown 2000\ncloud budget 64\ncloud color strategy\ncloud ends off\n\
-        cloud dots 1.5\n\
+        cloud dots 1.5\ncloud marks ends\ncloud scale log\ncloud cue 0.5\ncloud dim 0.25\n\
         scene shading wireframe\nscene opacity 0.25\nscene cutaway off\nscene camera on\n\
-        scene grid toggle\n\
+        scene grid toggle\nscene clip -x\nscene cut 0.25\n\
         image exposure -1.5\nimage auto\nimage zoom 2\nimage fit\n\
         panel statistics off\ntheme light\nhelp toggle\n\
         reconnect\nquit";
@@ -128,6 +128,9 @@ mod tests {
     fn every_choice_survives_its_text() {
         let texts = Side::ALL.iter().map(|s| format!("camera view {s}"));
         let texts = texts.chain(ColorMode::ALL.iter().map(|c| format!("cloud color {c}")));
+        let texts = texts.chain(Marks::ALL.iter().map(|m| format!("cloud marks {m}")));
+        let texts = texts.chain(ColorScale::ALL.iter().map(|s| format!("cloud scale {s}")));
+        let texts = texts.chain(ClipSide::ALL.iter().map(|s| format!("scene clip {s}")));
         let texts = texts.chain(Shading::ALL.iter().map(|s| format!("scene shading {s}")));
         let texts = texts.chain(PanelName::ALL.iter().map(|p| format!("panel {p} toggle")));
         let texts = texts.chain(["theme dark".into(), "theme light".into(), "theme toggle".into()]);

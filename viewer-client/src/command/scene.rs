@@ -18,6 +18,63 @@ pub enum SceneCommand {
     Camera(Switch),
     /// The grid on the ground.
     Grid(Switch),
+    /// Cuts away what lies on one side of a plane.
+    Clip(ClipSide),
+    /// Where the plane lies, from 0 to 1 across the scene.
+    Cut(f32),
+}
+
+/// What a plane cuts away.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ClipSide {
+    /// Nothing.
+    #[default]
+    Off,
+    /// Smaller x.
+    X,
+    /// Larger x.
+    MinusX,
+    /// Smaller y.
+    Y,
+    /// Larger y.
+    MinusY,
+    /// Smaller z.
+    Z,
+    /// Larger z.
+    MinusZ,
+}
+
+impl ClipSide {
+    /// All of them.
+    pub const ALL: [Self; 7] =
+        [Self::Off, Self::X, Self::MinusX, Self::Y, Self::MinusY, Self::Z, Self::MinusZ];
+
+    /// The direction in which the rest lies, or `None` when nothing is cut.
+    pub fn normal(self) -> Option<[f32; 3]> {
+        Some(match self {
+            Self::Off => return None,
+            Self::X => [1.0, 0.0, 0.0],
+            Self::MinusX => [-1.0, 0.0, 0.0],
+            Self::Y => [0.0, 1.0, 0.0],
+            Self::MinusY => [0.0, -1.0, 0.0],
+            Self::Z => [0.0, 0.0, 1.0],
+            Self::MinusZ => [0.0, 0.0, -1.0],
+        })
+    }
+}
+
+impl fmt::Display for ClipSide {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Off => "off",
+            Self::X => "x",
+            Self::MinusX => "-x",
+            Self::Y => "y",
+            Self::MinusY => "-y",
+            Self::Z => "z",
+            Self::MinusZ => "-z",
+        })
+    }
 }
 
 /// How surfaces are drawn.
@@ -56,6 +113,8 @@ pub(super) const FORMS: &[Form] = &[
     ("scene cutaway on|off|toggle", "look through surfaces from behind"),
     ("scene camera on|off|toggle", "the model of the render camera"),
     ("scene grid on|off|toggle", "the grid on the ground"),
+    ("scene clip off|x|-x|y|-y|z|-z", "cut away what lies before a plane along an axis"),
+    ("scene cut X", "where the plane lies across the scene (0 to 1)"),
 ];
 
 impl fmt::Display for SceneCommand {
@@ -66,6 +125,8 @@ impl fmt::Display for SceneCommand {
             Self::Cutaway(switch) => write!(f, "cutaway {switch}"),
             Self::Camera(switch) => write!(f, "camera {switch}"),
             Self::Grid(switch) => write!(f, "grid {switch}"),
+            Self::Clip(side) => write!(f, "clip {side}"),
+            Self::Cut(place) => write!(f, "cut {place}"),
         }
     }
 }
@@ -77,6 +138,8 @@ pub(super) fn parse(words: &mut Words<'_>) -> Result<SceneCommand, CommandError>
         "cutaway" => SceneCommand::Cutaway(words.switch()?),
         "camera" => SceneCommand::Camera(words.switch()?),
         "grid" => SceneCommand::Grid(words.switch()?),
+        "clip" => SceneCommand::Clip(words.choice("SIDE", &ClipSide::ALL)?),
+        "cut" => SceneCommand::Cut(words.number("X", 0.0..=1.0)?),
         other => return Err(CommandError::Unknown(format!("scene {other}"))),
     })
 }

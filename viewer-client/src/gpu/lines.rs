@@ -18,10 +18,20 @@ pub struct PageRange {
     pub first: usize,
 }
 
+/// How much of a page is on the graphics card.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Uploaded {
+    /// Revision of the page that the points are of.
+    pub revision: u32,
+    /// Paths of the page that were taken in, drawn or not.
+    pub paths: usize,
+}
+
 #[derive(Debug)]
 struct LinePage {
     buffer: wgpu::Buffer,
     points: usize,
+    uploaded: Uploaded,
 }
 
 impl LinePage {
@@ -89,17 +99,19 @@ impl Lines {
         }
     }
 
-    /// Points that a page holds already.
-    pub(super) fn uploaded(&self, serial: u64) -> usize {
-        self.pages.get(&serial).map_or(0, |page| page.points)
+    /// What of a page is here already.
+    pub(super) fn uploaded(&self, serial: u64) -> Option<Uploaded> {
+        self.pages.get(&serial).map(|page| page.uploaded)
     }
 
-    /// Appends points to a page; what does not fit is left out.
+    /// Appends points to a page, or replaces all of them when the page has another revision; what
+    /// does not fit is left out.
     pub(super) fn append(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         serial: u64,
+        uploaded: Uploaded,
         points: &[LinePoint],
     ) {
         let page = self.pages.entry(serial).or_insert_with(|| {
@@ -112,8 +124,12 @@ impl Lines {
                     mapped_at_creation: false,
                 })
             });
-            LinePage { buffer, points: 0 }
+            LinePage { buffer, points: 0, uploaded }
         });
+        if page.uploaded.revision != uploaded.revision {
+            page.points = 0;
+        }
+        page.uploaded = uploaded;
         let room = self.page_points - page.points;
         let points = points.get(..room).unwrap_or(points);
         queue.write_buffer(&page.buffer, page.points as u64 * STRIDE, bytemuck::cast_slice(points));
@@ -139,6 +155,7 @@ impl Lines {
                 usage: wgpu::BufferUsages::VERTEX,
             }),
             points: points.len(),
+            uploaded: Uploaded::default(),
         });
     }
 
@@ -155,39 +172,40 @@ impl Lines {
         pass.draw(0..4, 0..points.saturating_sub(1));
     }
 
-    pub(super) fn draw_paths(
+    /// Draws one layer of the points of a page from `range` on, and answers how many they are.
+    pub(super) fn draw_page(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
-        ranges: &[PageRange],
-        layers: PathLayers,
-    ) {
-        let passes = [
-            (layers.hidden, &self.hidden, 1),
-            (true, &self.visible, 1),
-            (layers.dots, &self.dots, 0),
-        ];
-        for (wanted, pipeline, less) in passes {
-            if !wanted {
-                continue;
-            }
+        range: PageRange,
+        layer: Layer,
+    ) -> usize {
+        let Some(page) = self.pages.get(&range.serial) else { return 0 };
+        let (pipeline, less) = match layer {
+            Layer::Hidden => (&self.hidden, 1),
+            Layer::Visible => (&self.visible, 1),
+            Layer::Dots => (&self.dots, 0),
+        };
+        let points = page.bind(pass, range.first);
+        if points > less {
             pass.set_pipeline(pipeline);
-            // Oldest first: newer paths lie on top.
-            for range in ranges.iter().rev() {
-                let Some(page) = self.pages.get(&range.serial) else { continue };
-                let points = page.bind(pass, range.first);
-                if points > less {
-                    pass.draw(0..4, 0..points - less);
-                }
-            }
+            pass.draw(0..4, 0..points - less);
         }
+        points as usize
+    }
+
+    /// Points that a range holds on the graphics card.
+    pub(super) fn points_of(&self, range: PageRange) -> usize {
+        self.pages.get(&range.serial).map_or(0, |page| page.points.saturating_sub(range.first))
     }
 }
 
-/// Which layers of the paths are worth drawing.
+/// What is drawn of the paths, one after the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct PathLayers {
-    /// What lies behind surfaces.
-    pub(super) hidden: bool,
+pub(super) enum Layer {
+    /// Lines behind surfaces.
+    Hidden,
+    /// Lines in front of them.
+    Visible,
     /// Dots at vertices.
-    pub(super) dots: bool,
+    Dots,
 }

@@ -8,8 +8,10 @@ mod composite;
 mod lines;
 mod mesh;
 mod pipeline;
+mod progress;
 mod renderer;
 mod target;
 
-pub use lines::PageRange;
-pub use renderer::{Picture, Quality, Renderer, ViewportCallback};
+pub use lines::{PageRange, Uploaded};
+pub use progress::Picture;
+pub use renderer::{Quality, Renderer, ViewportCallback};

@@ -1,26 +1,16 @@
 //! Everything on the graphics card, and the order in which it is drawn.
 
+use std::time::Instant;
+
 use egui_wgpu::{CallbackResources, CallbackTrait, ScreenDescriptor};
-use shaders::{FrameUniforms, LinePoint, MeshVertex};
+use shaders::{LinePoint, MeshVertex};
 
 use super::composite::Composite;
-use super::lines::{Lines, PageRange, PathLayers};
+use super::lines::{Layer, Lines, PageRange, Uploaded};
 use super::mesh::Mesh;
 use super::pipeline::FrameGroup;
-use super::target::Target;
-
-/// What to draw.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Picture {
-    /// Width and height in pixels.
-    pub size: [u32; 2],
-    /// The eye and every number of the shaders.
-    pub uniforms: FrameUniforms,
-    /// The paths, newest page first.
-    pub paths: Vec<PageRange>,
-    /// Surfaces are drawn at all.
-    pub surfaces: bool,
-}
+use super::progress::{Allowance, Picture};
+use super::target::{Part, Target};
 
 /// How well to draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,9 +30,35 @@ pub struct Renderer {
     mesh: Mesh,
     lines: Lines,
     composite: Composite,
-    target: Option<Target>,
-    /// What the target shows, until something is uploaded.
-    drawn: Option<Picture>,
+    /// What the window shows.
+    shown: Option<Shown>,
+    /// What takes its place when it is done.
+    coming: Option<Coming>,
+    allowance: Allowance,
+    /// Grows with every upload.
+    content: u64,
+    /// More of the same is about to be uploaded.
+    uploading: bool,
+}
+
+/// The picture in the window.
+#[derive(Debug)]
+struct Shown {
+    target: Target,
+    picture: Picture,
+    content: u64,
+    /// It is the whole picture rather than a glance.
+    whole: bool,
+}
+
+/// A picture that takes several frames.
+#[derive(Debug)]
+struct Coming {
+    target: Target,
+    picture: Picture,
+    content: u64,
+    steps: Vec<(Layer, PageRange)>,
+    next: usize,
 }
 
 impl Renderer {
@@ -54,9 +70,9 @@ impl Renderer {
         page_points: usize,
         quality: Quality,
     ) -> Self {
-        let samples = match quality {
-            Quality::Smooth => 4,
-            Quality::Fast => 1,
+        let (samples, points) = match quality {
+            Quality::Smooth => (4, 1 << 20),
+            Quality::Fast => (1, 1 << 15),
         };
         let frame = FrameGroup::new(&device, samples);
         Self {
@@ -64,8 +80,11 @@ impl Renderer {
             lines: Lines::new(&device, &frame, page_points),
             composite: Composite::new(&device, &frame, format),
             frame,
-            target: None,
-            drawn: None,
+            shown: None,
+            coming: None,
+            allowance: Allowance::new(points),
+            content: 0,
+            uploading: false,
             device,
             queue,
         }
@@ -74,26 +93,40 @@ impl Renderer {
     /// Replaces all surfaces.
     pub fn set_mesh(&mut self, corners: &[MeshVertex]) {
         self.mesh.set(&self.device, corners);
-        self.drawn = None;
+        self.content += 1;
     }
 
     /// Replaces the drawing aids.
     pub fn set_aids(&mut self, points: &[LinePoint]) {
         self.lines.set_aids(&self.device, points);
-        self.drawn = None;
+        self.content += 1;
     }
 
-    /// Points of a page that are here already.
-    pub fn uploaded(&self, serial: u64) -> usize {
+    /// What of a page is here already.
+    pub fn uploaded(&self, serial: u64) -> Option<Uploaded> {
         self.lines.uploaded(serial)
     }
 
-    /// Appends points to a page.
-    pub fn append_points(&mut self, serial: u64, points: &[LinePoint]) {
-        if !points.is_empty() {
-            self.lines.append(&self.device, &self.queue, serial, points);
-            self.drawn = None;
-        }
+    /// Appends points to a page, or replaces them when the page has another revision.
+    pub fn append_points(&mut self, serial: u64, uploaded: Uploaded, points: &[LinePoint]) {
+        self.lines.append(&self.device, &self.queue, serial, uploaded, points);
+        self.content += 1;
+    }
+
+    /// Says whether more of the same is about to be uploaded: until then only a glance is drawn.
+    pub fn set_uploading(&mut self, uploading: bool) {
+        self.uploading = uploading;
+    }
+
+    /// Draws no more than `points` points in the next frame.
+    #[cfg(test)]
+    pub(crate) fn limit(&mut self, points: usize) {
+        self.allowance = Allowance::new(points);
+    }
+
+    /// True while the window shows less than what was asked for.
+    pub fn is_refining(&self) -> bool {
+        self.coming.is_some() || self.shown.as_ref().is_some_and(|shown| !shown.whole)
     }
 
     /// Gives up every page older than `first`.
@@ -107,35 +140,111 @@ impl Renderer {
     }
 
     fn prepare(&mut self, encoder: &mut wgpu::CommandEncoder, picture: &Picture) {
-        if self.drawn.as_ref() == Some(picture) {
+        let up_to_date = self.shown.as_ref().is_some_and(|shown| {
+            shown.whole && shown.content == self.content && shown.picture == *picture
+        });
+        if up_to_date {
+            self.coming = None;
+            self.allowance.rest();
             return;
         }
-        let target = match self.target.take() {
-            Some(target) if target.size == picture.size => target,
-            _ => {
-                let target = Target::new(&self.device, picture.size, self.frame.samples);
-                self.composite.set_picture(&self.device, &target.resolved);
-                target
-            }
-        };
-        self.frame.write(&self.queue, &picture.uniforms);
-        self.draw(&mut target.begin(encoder), picture);
-        self.target = Some(target);
-        self.drawn = Some(picture.clone());
+        self.allowance.tick(Instant::now());
+        if picture.cost(&self.lines) <= self.allowance.points() {
+            self.coming = None;
+            self.draw_at_once(encoder, picture, picture, true);
+            return;
+        }
+        let seen = self.shown.as_ref().is_some_and(|shown| shown.picture.same_view(picture));
+        if !seen {
+            self.coming = None;
+            let glance = picture.glance(&self.lines, self.allowance.points());
+            self.draw_at_once(encoder, &glance, picture, false);
+        } else if !self.uploading {
+            self.go_on(encoder, picture);
+        }
     }
 
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, picture: &Picture) {
+    /// Draws `drawn` in one pass, as what the window shows of `picture`.
+    fn draw_at_once(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        drawn: &Picture,
+        picture: &Picture,
+        whole: bool,
+    ) {
+        let target = match self.shown.take() {
+            Some(shown) if shown.picture.size == picture.size => shown.target,
+            _ => self.new_target(picture.size),
+        };
+        self.composite.set_picture(&self.device, &target.resolved);
+        self.frame.write(&self.queue, &drawn.uniforms);
+        let mut pass = target.begin(encoder, Part { first: true, last: true });
+        self.begin(&mut pass, drawn);
+        for (layer, range) in drawn.steps() {
+            self.lines.draw_page(&mut pass, range, layer);
+        }
+        self.end(&mut pass, drawn);
+        drop(pass);
+        let (picture, content) = (picture.clone(), self.content);
+        self.shown = Some(Shown { target, picture, content, whole });
+    }
+
+    /// Draws the next part of the coming picture, which is `wanted` or one that differs only by the
+    /// paths that have come since it was begun.
+    fn go_on(&mut self, encoder: &mut wgpu::CommandEncoder, wanted: &Picture) {
+        let coming = self.coming.take().filter(|coming| coming.picture.same_view(wanted));
+        let mut coming = coming.unwrap_or_else(|| Coming {
+            target: self.new_target(wanted.size),
+            picture: wanted.clone(),
+            content: self.content,
+            steps: wanted.steps(),
+            next: 0,
+        });
+        self.frame.write(&self.queue, &coming.picture.uniforms);
+        let mut end = coming.next;
+        let mut room = self.allowance.points();
+        while let Some((_, range)) = coming.steps.get(end).filter(|_| room > 0) {
+            room = room.saturating_sub(self.lines.points_of(*range));
+            end += 1;
+        }
+        let part = Part { first: coming.next == 0, last: end == coming.steps.len() };
+        let mut pass = coming.target.begin(encoder, part);
+        if part.first {
+            self.begin(&mut pass, &coming.picture);
+        }
         pass.set_bind_group(0, &self.frame.group, &[]);
-        let uniforms = &picture.uniforms;
+        for (layer, range) in coming.steps.get(coming.next..end).unwrap_or_default() {
+            self.lines.draw_page(&mut pass, *range, *layer);
+        }
+        if part.last {
+            self.end(&mut pass, &coming.picture);
+        }
+        drop(pass);
+        coming.next = end;
+        if part.last {
+            let Coming { target, picture, content, .. } = coming;
+            self.composite.set_picture(&self.device, &target.resolved);
+            self.shown = Some(Shown { target, picture, content, whole: true });
+        } else {
+            self.coming = Some(coming);
+        }
+    }
+
+    fn new_target(&self, size: [u32; 2]) -> Target {
+        Target::new(&self.device, size, self.frame.samples)
+    }
+
+    /// What lies under the paths.
+    fn begin(&self, pass: &mut wgpu::RenderPass<'_>, picture: &Picture) {
+        pass.set_bind_group(0, &self.frame.group, &[]);
         if picture.surfaces {
             self.mesh.draw_opaque(pass);
         }
         self.lines.draw_aids(pass);
-        let layers = PathLayers {
-            hidden: picture.surfaces && uniforms.line.z > 0.0,
-            dots: uniforms.fade.w > 0.0 || uniforms.tone.z > 0.0,
-        };
-        self.lines.draw_paths(pass, &picture.paths, layers);
+    }
+
+    /// What lies over them.
+    fn end(&self, pass: &mut wgpu::RenderPass<'_>, picture: &Picture) {
         if picture.surfaces {
             self.mesh.draw_translucent(pass);
         }
@@ -147,6 +256,8 @@ impl Renderer {
 pub struct ViewportCallback {
     /// What to draw.
     pub picture: Picture,
+    /// Told when the picture needs another frame.
+    pub ctx: egui::Context,
 }
 
 impl CallbackTrait for ViewportCallback {
@@ -160,6 +271,9 @@ impl CallbackTrait for ViewportCallback {
     ) -> Vec<wgpu::CommandBuffer> {
         if let Some(renderer) = resources.get_mut::<Renderer>() {
             renderer.prepare(encoder, &self.picture);
+            if renderer.is_refining() {
+                self.ctx.request_repaint();
+            }
         }
         Vec::new()
     }

@@ -4,10 +4,19 @@
 pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Reversed depth needs floats.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// Which part of a picture a pass draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Part {
+    /// The picture begins: nothing in it yet, at infinity.
+    pub(super) first: bool,
+    /// The picture is done: only its colours are kept.
+    pub(super) last: bool,
+}
+
 /// A picture of one size.
 #[derive(Debug)]
 pub(super) struct Target {
-    pub(super) size: [u32; 2],
     /// The picture with several samples a pixel, where there are several.
     samples: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
@@ -32,7 +41,6 @@ impl Target {
             texture.create_view(&wgpu::TextureViewDescriptor::default())
         };
         Self {
-            size,
             samples: (samples > 1)
                 .then(|| view("picture samples", COLOR_FORMAT, samples, attachment)),
             depth: view("picture depth", DEPTH_FORMAT, samples, attachment),
@@ -45,10 +53,15 @@ impl Target {
         }
     }
 
-    /// Begins the picture: nothing in it, at infinity.
-    pub(super) fn begin<'a>(&self, encoder: &'a mut wgpu::CommandEncoder) -> wgpu::RenderPass<'a> {
+    /// Begins a pass that draws a part of the picture.
+    pub(super) fn begin<'a>(
+        &self,
+        encoder: &'a mut wgpu::CommandEncoder,
+        part: Part,
+    ) -> wgpu::RenderPass<'a> {
+        let kept = if part.last { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
         let (view, resolve_target, store) = match &self.samples {
-            Some(samples) => (samples, Some(&self.resolved), wgpu::StoreOp::Discard),
+            Some(samples) => (samples, Some(&self.resolved), kept),
             None => (&self.resolved, None, wgpu::StoreOp::Store),
         };
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -58,15 +71,19 @@ impl Target {
                 depth_slice: None,
                 resolve_target,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    load: if part.first {
+                        wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)
+                    } else {
+                        wgpu::LoadOp::Load
+                    },
                     store,
                 },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.depth,
                 depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(0.0),
-                    store: wgpu::StoreOp::Discard,
+                    load: if part.first { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load },
+                    store: kept,
                 }),
                 stencil_ops: None,
             }),

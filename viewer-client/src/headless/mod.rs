@@ -8,8 +8,8 @@ use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguratio
 
 use crate::app::Viewer;
 use crate::connection::{Link, Waker};
-use crate::gpu::Quality;
-use crate::window::graphics_setup;
+use crate::gpu::{Quality, Renderer};
+use crate::window;
 
 /// A daemon that has sent nothing for this long will not.
 const PATIENCE: Duration = Duration::from_mins(1);
@@ -71,7 +71,7 @@ fn wait_for(viewer: &mut Viewer, wait: Wait) -> anyhow::Result<()> {
 }
 
 async fn graphics(backends: wgpu::Backends) -> Result<RenderState, egui_wgpu::WgpuError> {
-    let mut setup = graphics_setup();
+    let mut setup = window::graphics_setup();
     setup.instance_descriptor.backends = wgpu::Backends::from_env().unwrap_or(backends);
     let config = WgpuConfiguration {
         wgpu_setup: WgpuSetup::CreateNew(setup),
@@ -79,6 +79,15 @@ async fn graphics(backends: wgpu::Backends) -> Result<RenderState, egui_wgpu::Wg
     };
     let instance = config.wgpu_setup.new_instance().await;
     RenderState::create(&config, &instance, None, RendererOptions::PREDICTABLE).await
+}
+
+/// How long a frame took.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameCost {
+    /// Until everything was told to the graphics card.
+    pub cpu: Duration,
+    /// Until the picture was done.
+    pub wall: Duration,
 }
 
 /// An egui context and a graphics card without a window.
@@ -97,8 +106,17 @@ impl std::fmt::Debug for Stage {
 }
 
 impl Stage {
-    /// A stage of `size` pixels.
+    /// A stage of `size` pixels for pictures to keep.
     pub fn new(size: [u32; 2]) -> anyhow::Result<Self> {
+        Self::with(size, |_| Quality::Smooth)
+    }
+
+    /// A stage of `size` pixels that draws as well as a window would.
+    pub fn like_a_window(size: [u32; 2]) -> anyhow::Result<Self> {
+        Self::with(size, window::quality)
+    }
+
+    fn with(size: [u32; 2], quality: fn(&RenderState) -> Quality) -> anyhow::Result<Self> {
         let runtime = tokio::runtime::Builder::new_current_thread().build()?;
         // Looking for OpenGL without a display makes drivers complain, so it comes last.
         let gpu = runtime
@@ -106,7 +124,7 @@ impl Stage {
             .or_else(|_| runtime.block_on(graphics(wgpu::Backends::GL)))
             .context("no graphics driver; on Debian, install mesa-vulkan-drivers")?;
         let ctx = egui::Context::default();
-        Viewer::install(&ctx, &gpu, Quality::Smooth);
+        Viewer::install(&ctx, &gpu, quality(&gpu));
         let target = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("window"),
             size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
@@ -125,11 +143,21 @@ impl Stage {
         for _ in 0..SETTLING_FRAMES {
             self.frame(viewer)?;
         }
+        while self.is_refining() {
+            self.frame(viewer)?;
+        }
         self.read_back()
     }
 
+    /// True while the picture takes more frames.
+    pub fn is_refining(&self) -> bool {
+        let renderer = self.gpu.renderer.read();
+        renderer.callback_resources.get::<Renderer>().is_some_and(Renderer::is_refining)
+    }
+
     /// One frame of the interface.
-    pub fn frame(&mut self, viewer: &mut Viewer) -> anyhow::Result<()> {
+    pub fn frame(&mut self, viewer: &mut Viewer) -> anyhow::Result<FrameCost> {
+        let started = Instant::now();
         while viewer.upload(&self.gpu) {}
         let screen = egui::vec2(self.size[0] as f32, self.size[1] as f32);
         let input = egui::RawInput {
@@ -137,21 +165,25 @@ impl Stage {
             time: Some(self.time),
             ..egui::RawInput::default()
         };
-        let started = Instant::now();
         // Half a second a frame: animations are over after a few frames.
         self.time += 0.5;
         let mut output = self.ctx.run_ui(input, |ui| viewer.ui(ui));
         let primitives = self.ctx.tessellate(output.shapes, output.pixels_per_point);
-        self.draw(&primitives, &mut output.textures_delta)?;
-        tracing::debug!("a frame took {:.0} ms", 1e3 * started.elapsed().as_secs_f64());
-        Ok(())
+        let commands = self.encode(&primitives, &mut output.textures_delta);
+        let cpu = started.elapsed();
+        self.gpu.queue.submit(commands);
+        let done = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        done.context("the graphics driver gave up")?;
+        let cost = FrameCost { cpu, wall: started.elapsed() };
+        tracing::debug!("a frame took {:.0} ms", 1e3 * cost.wall.as_secs_f64());
+        Ok(cost)
     }
 
-    fn draw(
+    fn encode(
         &self,
         primitives: &[egui::ClippedPrimitive],
         textures: &mut egui::TexturesDelta,
-    ) -> anyhow::Result<()> {
+    ) -> Vec<wgpu::CommandBuffer> {
         let RenderState { device, queue, .. } = &self.gpu;
         let mut renderer = self.gpu.renderer.write();
         #[expect(clippy::iter_over_hash_type, reason = "textures do not depend on each other")]
@@ -182,14 +214,11 @@ impl Stage {
             .forget_lifetime();
         renderer.render(&mut pass, primitives, &screen);
         drop(pass);
-        queue.submit(more.into_iter().chain(Some(encoder.finish())));
         #[expect(clippy::iter_over_hash_type, reason = "textures do not depend on each other")]
         for id in textures.free.drain() {
             renderer.free_texture(&id);
         }
-        drop(renderer);
-        device.poll(wgpu::PollType::wait_indefinitely()).context("the graphics driver gave up")?;
-        Ok(())
+        more.into_iter().chain(Some(encoder.finish())).collect()
     }
 
     fn read_back(&self) -> anyhow::Result<image::RgbaImage> {

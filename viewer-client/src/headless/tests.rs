@@ -59,6 +59,42 @@ fn lines_keep_their_width_whatever_their_distance() {
 }
 
 #[test]
+fn a_picture_drawn_in_parts_is_the_same() {
+    let Some(mut stage) = stage() else { return };
+    // Six pages of short paths, so that there is something to divide.
+    let bit = |i: usize| {
+        let [x, y] = [i % 160, i / 160].map(|n| 5.0 * n as f32 - 400.0);
+        [[x, y, 0.0], [x + 9.0, y + 3.0, 40.0], [x - 5.0, y + 20.0, 0.0]]
+    };
+    let bits: Vec<_> = (0..24_000).map(bit).collect();
+    let paths: Vec<&[[f32; 3]]> = bits.iter().map(<[_; 3]>::as_slice).collect();
+    let look = ["cloud shown 1000000", "cloud dots 2", "cloud color luminance"];
+    let at_once = picture(&mut stage, &paths, &look);
+    let few = picture(&mut stage, &paths, &["cloud shown 2000", look[1], look[2]]);
+    let limit = |stage: &mut Stage| {
+        let mut renderer = stage.gpu.renderer.write();
+        renderer.callback_resources.get_mut::<Renderer>().expect("a renderer").limit(20_000);
+    };
+    limit(&mut stage);
+    let in_parts = picture(&mut stage, &paths, &look);
+    assert!(at_once == in_parts, "the parts make the whole");
+    assert!(at_once != few, "and show more than the newest");
+}
+
+#[test]
+fn a_plane_cuts_paths_away() {
+    let Some(mut stage) = stage() else { return };
+    let wide = ["cloud width 8", "cloud opacity 1"];
+    let half = |side: &str| {
+        let empty = picture(&mut stage, &[FAR], &["cloud shown 0", side, "scene cut 0.5"]);
+        let cut = picture(&mut stage, &[FAR], &[wide[0], wide[1], side, "scene cut 0.5"]);
+        !rows_that_differ(&empty, &cut).is_empty()
+    };
+    let seen = ["scene clip off", "scene clip -x", "scene clip x"].map(half);
+    assert_eq!(seen, [true, true, false], "the column lies left of the middle");
+}
+
+#[test]
 fn surfaces_hide_what_lies_behind_them() {
     let Some(mut stage) = stage() else { return };
     let behind: &[[f32; 3]] = &[[-400.0, 150.0, -600.0], [400.0, 150.0, -600.0]];

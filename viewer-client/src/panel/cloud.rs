@@ -4,7 +4,7 @@ use egui::{Button, ProgressBar, RichText, Ui};
 
 use super::Panel;
 use super::widgets::{Scale, choice, row, slider, toggle};
-use crate::command::{CloudCommand, ColorMode, Command, Switch};
+use crate::command::{CloudCommand, ColorMode, ColorScale, Command, Marks, Switch};
 use crate::format;
 use crate::world::World;
 
@@ -40,10 +40,19 @@ fn buttons(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(CloudCommand)) 
 
 fn look(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(CloudCommand)) {
     let cloud = &world.settings.cloud;
-    let tip = "What the colour of a path says: the light it carries, the strategy that proposed it, \
-        or its number of edges (C)";
+    let tip = "What the colour of a path says; the legend explains it (C)";
     if let Some(mode) = choice(ui, "Colour", tip, cloud.color, &ColorMode::ALL) {
         push(CloudCommand::Color(mode));
+    }
+    if cloud.color.has_scale() {
+        let tip = "Equal factors or equal differences make equal steps of colour";
+        if let Some(scale) = choice(ui, "Scale", tip, cloud.scale, &ColorScale::ALL) {
+            push(CloudCommand::Scale(scale));
+        }
+    }
+    let tip = "Whole paths, their vertices alone, or only the vertex on the light and the one seen";
+    if let Some(marks) = choice(ui, "Draw", tip, cloud.marks, &Marks::ALL) {
+        push(CloudCommand::Marks(marks));
     }
     let tip = "Width of the lines on screen, whatever their distance ( [ and ] )";
     let scale = Scale::logarithmic(0.25..=20.0, 2).suffix(" px");
@@ -57,6 +66,10 @@ fn look(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(CloudCommand)) {
     let tip = "How much is seen of the parts that lie behind surfaces";
     if let Some(x) = slider(ui, "Hidden", tip, cloud.hidden, Scale::linear(0.0..=1.0, 2)) {
         push(CloudCommand::Hidden(x));
+    }
+    let tip = "How much distance dims paths, so that near ones stand out";
+    if let Some(x) = slider(ui, "Depth cue", tip, cloud.cue, Scale::linear(0.0..=1.0, 2)) {
+        push(CloudCommand::Cue(x));
     }
     let tip = "After how many newer paths a path has faded";
     let scale = Scale::logarithmic(1.0..=1e6, 0);

@@ -4,7 +4,7 @@ use egui::{Button, RichText, Ui};
 
 use super::Panel;
 use super::widgets::{Scale, choice, slider, toggle};
-use crate::command::{CameraCommand, Command, SceneCommand, Shading, Switch};
+use crate::command::{CameraCommand, ClipSide, Command, SceneCommand, Shading, Switch};
 use crate::format;
 use crate::world::World;
 
@@ -27,6 +27,16 @@ impl Panel for Scene {
         let tip = "Surfaces seen from behind become glass, so that one looks into rooms (B)";
         if let Some(switch) = toggle(ui, "Cut away backs", tip, scene.cutaway) {
             push(SceneCommand::Cutaway(switch));
+        }
+        let tip = "A plane that cuts away what lies before it along an axis";
+        if let Some(side) = choice(ui, "Clip", tip, scene.clip, &ClipSide::ALL) {
+            push(SceneCommand::Clip(side));
+        }
+        if scene.clip != ClipSide::Off {
+            let tip = "Where the plane lies across the scene";
+            if let Some(x) = slider(ui, "Cut at", tip, scene.cut, Scale::linear(0.0..=1.0, 2)) {
+                push(SceneCommand::Cut(x));
+            }
         }
         let tip = "A wireframe model where the picture is taken from";
         if let Some(switch) = toggle(ui, "Camera model", tip, scene.aids.camera) {

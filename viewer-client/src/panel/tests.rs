@@ -180,6 +180,37 @@ fn a_slider_at_rest_says_nothing() {
 }
 
 #[test]
+fn long_numbers_do_not_widen_their_panel() {
+    let mut stage = Stage::new(cloud::Cloud);
+    stage.settings.cloud.fade = 1e7;
+    stage.settings.cloud.shown = 10_000_000;
+    stage.settings.cloud.budget_mib = 65_536;
+    let harness = Harness::builder().with_size(egui::vec2(800.0, 700.0)).build_ui_state(
+        |ui, (stage, widths): &mut (Stage, Vec<f32>)| {
+            let said = &mut stage.said;
+            let world = World {
+                settings: &stage.settings,
+                camera: &stage.camera,
+                status: &stage.status,
+                store: &stage.store,
+                film: &stage.film,
+                model: None,
+                now: Instant::now(),
+            };
+            let panel = &mut stage.panel;
+            let left = egui::Panel::left("left").default_size(LEFT_WIDTH);
+            let shown = left.show(ui, |ui| panel.ui(ui, &world, said));
+            widths.push(shown.response.rect.width());
+        },
+        (stage, Vec::new()),
+    );
+    let mut harness = harness;
+    harness.run_steps(5);
+    let widths = &harness.state().1;
+    assert!(widths.windows(2).all(|w| w[0] == w[1]), "the panel creeps: {widths:?}");
+}
+
+#[test]
 fn the_scene_panel_speaks_in_commands() {
     let mut harness = Stage::new(scene::Scene).harness();
     harness.run();

@@ -73,7 +73,11 @@ impl Scale {
 pub(super) fn slider(ui: &mut Ui, label: &str, tip: &str, value: f32, scale: Scale) -> Option<f32> {
     let mut moved = value;
     let response = row(ui, label, tip, |ui| {
-        ui.spacing_mut().slider_width = (ui.available_width() - 74.0).max(50.0);
+        // Long numbers take their room from the slider: a row that is too wide would widen its panel
+        // with every frame.
+        let letters = format!("{value:.*}", scale.decimals).len() + scale.suffix.len();
+        let number = (8.0 * letters as f32 + 28.0).max(74.0);
+        ui.spacing_mut().slider_width = (ui.available_width() - number).max(30.0);
         ui.add(
             Slider::new(&mut moved, scale.range)
                 .logarithmic(scale.logarithmic)

@@ -3,12 +3,14 @@
 //! Paths are only ever appended; when the budget is spent, the oldest page goes. Nothing here knows
 //! of the window or the graphics card: [`Page::points`] yields plain vertices.
 
+mod classes;
 mod page;
 #[cfg(test)]
 mod tests;
 mod tone;
 
-pub use page::{PAGE_POINTS, Page, StoredPath};
+pub use classes::{Classes, class_name};
+pub use page::{Drawn, PAGE_POINTS, Page, StoredPath};
 pub use tone::Tone;
 
 use std::collections::VecDeque;
@@ -42,6 +44,8 @@ pub struct Store {
     budget: usize,
     counts: Counts,
     tone: Tone,
+    classes: Classes,
+    drawn: Drawn,
 }
 
 impl Store {
@@ -55,6 +59,8 @@ impl Store {
             budget,
             counts: Counts::default(),
             tone: Tone::default(),
+            classes: Classes::default(),
+            drawn: Drawn::default(),
         }
     }
 
@@ -68,7 +74,8 @@ impl Store {
                 self.open_page();
             }
             let Some(page) = self.pages.back_mut() else { return };
-            page.push(&path, self.next_ordinal);
+            let class = self.classes.number(path.vertices);
+            page.push(&path, self.next_ordinal, class, true);
             self.tone.note(path.header.luminance);
             self.next_ordinal = self.next_ordinal.wrapping_add(1);
             self.held += 1;
@@ -98,6 +105,7 @@ impl Store {
         self.pages.clear();
         self.held = 0;
         self.tone = Tone::default();
+        self.classes = Classes::default();
     }
 
     /// Changes the budget, and drops what no longer fits.
@@ -171,8 +179,31 @@ impl Store {
         self.next_ordinal.wrapping_sub(1)
     }
 
-    /// The newest `paths` paths as (page, first point), newest page first: from the first point to
-    /// the end of the page.
+    /// The classes of the paths, in the order in which they came.
+    pub fn classes(&self) -> &Classes {
+        &self.classes
+    }
+
+    /// Which paths are drawn.
+    pub fn drawn(&self) -> Drawn {
+        self.drawn
+    }
+
+    /// Changes which paths are drawn.
+    pub fn set_drawn(&mut self, drawn: Drawn) {
+        if self.drawn != drawn {
+            self.drawn = drawn;
+            self.pages.iter_mut().for_each(Page::outdate);
+        }
+    }
+
+    /// Paths held that match the filter.
+    pub fn matched(&self) -> usize {
+        self.pages.iter().map(Page::matched).sum()
+    }
+
+    /// The newest `paths` paths that are drawn as (page, first point), newest page first: from the
+    /// first point to the end of the page. Only the points that are drawn count.
     pub fn newest(&self, paths: usize) -> Vec<(u64, usize)> {
         let mut wanted = paths;
         let mut ranges = Vec::new();
@@ -180,9 +211,12 @@ impl Store {
             if wanted == 0 {
                 break;
             }
-            let skipped = page.paths().len().saturating_sub(wanted);
-            wanted -= page.paths().len() - skipped;
-            ranges.push((page.serial(), page.paths().get(skipped).map_or(0, |p| p.first as usize)));
+            let drawn = page.drawn(self.drawn);
+            let skipped = drawn.saturating_sub(wanted);
+            wanted -= drawn - skipped;
+            let before = page.paths().iter().filter(|path| self.drawn.includes(path));
+            let first = before.take(skipped).map(|path| usize::from(path.count)).sum();
+            ranges.push((page.serial(), first));
         }
         ranges
     }

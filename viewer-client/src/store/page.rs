@@ -5,8 +5,8 @@ use shaders::{LinePoint, encode_radiance, role};
 
 /// Vertices a page holds.
 pub const PAGE_POINTS: usize = 16 * 1024;
-/// No path is shorter, so that a page holds this many times fewer paths than vertices.
-const FEWEST_VERTICES: usize = 2;
+/// Paths a page holds: as many as have four vertices each. Shorter ones are rare.
+const PAGE_PATHS: usize = PAGE_POINTS / 4;
 
 /// A path in a page.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,14 +17,45 @@ pub struct StoredPath {
     pub first: u32,
     /// Number of vertices.
     pub count: u8,
+    /// Number of its class; see [`super::Classes`].
+    pub class: u8,
+    /// The filter lets it through.
+    pub matched: bool,
     /// Number of the path since the viewer started, wrapping.
     pub ordinal: u32,
+}
+
+impl StoredPath {
+    /// The range of its vertices in the page.
+    pub fn range(&self) -> std::ops::Range<usize> {
+        let first = self.first as usize;
+        first..first + usize::from(self.count)
+    }
+}
+
+/// Which paths of a page are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Drawn {
+    /// All; those that the filter leaves out are dimmed.
+    #[default]
+    All,
+    /// Those that match the filter.
+    Matched,
+}
+
+impl Drawn {
+    /// True when the path is drawn.
+    pub fn includes(self, path: &StoredPath) -> bool {
+        self == Self::All || path.matched
+    }
 }
 
 /// Whole paths in two columns. It never reallocates, so that its size is known beforehand.
 #[derive(Debug)]
 pub struct Page {
     serial: u64,
+    revision: u32,
+    matched: usize,
     paths: Vec<StoredPath>,
     vertices: Vec<VertexRecord>,
 }
@@ -32,12 +63,14 @@ pub struct Page {
 impl Page {
     /// Bytes that a page uses at most, with its copy on the graphics card.
     pub const BYTES: usize = PAGE_POINTS * (size_of::<VertexRecord>() + size_of::<LinePoint>())
-        + PAGE_POINTS / FEWEST_VERTICES * size_of::<StoredPath>();
+        + PAGE_PATHS * size_of::<StoredPath>();
 
     pub(super) fn new(serial: u64) -> Self {
         Self {
             serial,
-            paths: Vec::with_capacity(PAGE_POINTS / FEWEST_VERTICES),
+            revision: 0,
+            matched: 0,
+            paths: Vec::with_capacity(PAGE_PATHS),
             vertices: Vec::with_capacity(PAGE_POINTS),
         }
     }
@@ -47,47 +80,72 @@ impl Page {
         self.serial
     }
 
+    /// Grows when points that were handed out before are no longer right.
+    pub fn revision(&self) -> u32 {
+        self.revision
+    }
+
     /// The paths, oldest first.
     pub fn paths(&self) -> &[StoredPath] {
         &self.paths
     }
 
-    /// The vertices of one of its paths, from the light to the lens.
-    pub fn vertices(&self, path: &StoredPath) -> &[VertexRecord] {
-        let first = path.first as usize;
-        self.vertices.get(first..first + usize::from(path.count)).unwrap_or_default()
+    /// The vertices of all its paths, one path after the other.
+    pub fn all_vertices(&self) -> &[VertexRecord] {
+        &self.vertices
     }
 
-    /// Number of vertices.
-    pub fn point_count(&self) -> usize {
-        self.vertices.len()
+    /// The vertices of one of its paths, from the light to the lens.
+    pub fn vertices(&self, path: &StoredPath) -> &[VertexRecord] {
+        self.vertices.get(path.range()).unwrap_or_default()
+    }
+
+    /// Paths that match the filter.
+    pub fn matched(&self) -> usize {
+        self.matched
+    }
+
+    /// Paths that are drawn.
+    pub fn drawn(&self, drawn: Drawn) -> usize {
+        if drawn == Drawn::All { self.paths.len() } else { self.matched }
     }
 
     pub(super) fn has_room(&self, vertices: usize) -> bool {
-        self.vertices.len() + vertices <= PAGE_POINTS
+        self.vertices.len() + vertices <= PAGE_POINTS && self.paths.len() < PAGE_PATHS
     }
 
-    pub(super) fn push(&mut self, path: &PathView<'_>, ordinal: u32) {
+    pub(super) fn push(&mut self, path: &PathView<'_>, ordinal: u32, class: u8, matched: bool) {
         self.paths.push(StoredPath {
             header: path.header,
             first: self.vertices.len() as u32,
             count: path.vertices.len() as u8,
+            class,
+            matched,
             ordinal,
         });
         self.vertices.extend_from_slice(path.vertices);
+        self.matched += usize::from(matched);
+    }
+
+    /// Points handed out before are no longer right.
+    pub(super) fn outdate(&mut self) {
+        self.revision = self.revision.wrapping_add(1);
     }
 
     /// The points to draw of every path from number `skip` on, in order.
-    pub fn points(&self, skip: usize) -> impl Iterator<Item = LinePoint> {
+    pub fn points(&self, skip: usize, drawn: Drawn) -> impl Iterator<Item = LinePoint> {
         let paths = self.paths.get(skip..).unwrap_or_default();
-        paths.iter().flat_map(|path| {
+        paths.iter().filter(move |path| drawn.includes(path)).flat_map(|path| {
             let color = color_code(&path.header);
             let last = usize::from(path.count).saturating_sub(1);
+            let dimmed = if path.matched { 0 } else { role::DIMMED };
+            let group = (path.header.id.chain.0 % 16) as u8 | path.class << 4;
             self.vertices(path).iter().enumerate().map(move |(i, vertex)| {
                 let start = if i == 0 { role::START } else { 0 };
                 let end = if i == last { role::LAST } else { 0 };
-                let along = (255 * i).checked_div(last).unwrap_or(0) as u8;
-                let info = [start | end, path.header.strategy.0, along, last as u8];
+                let kind = (vertex.kind as u8) << role::KIND_SHIFT;
+                let roles = start | end | dimmed | kind;
+                let info = [roles, path.header.strategy.0, group, last as u8];
                 LinePoint { position: vertex.position, color, ordinal: path.ordinal, info }
             })
         })

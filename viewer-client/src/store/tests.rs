@@ -64,11 +64,12 @@ fn points_are_the_vertices_in_order_with_their_roles() {
     let mut store = Store::new(usize::MAX);
     store.append(&batch(0, 3, 4));
     let page = store.pages().next().expect("a page");
-    let points: Vec<_> = page.points(1).collect();
+    let points: Vec<_> = page.points(1, Drawn::All).collect();
     assert_eq!(points.len(), 8, "the last two paths");
     assert_eq!(points[0].position[0], 1.0, "the second path comes first");
-    let info: Vec<_> = points[4..].iter().map(|p| (p.info[0], p.info[2])).collect();
-    assert_eq!(info, [(role::START, 0), (0, 85), (0, 170), (role::LAST, 255)], "roles and places");
+    let info: Vec<_> = points[4..].iter().map(|p| p.info[0]).collect();
+    let kind = (VertexKind::Diffuse as u8) << role::KIND_SHIFT;
+    assert_eq!(info, [role::START, 0, 0, role::LAST].map(|r| r | kind), "roles and kinds");
     assert_eq!(points[7].info[3], 3, "edges");
     assert_eq!(points[7].ordinal, 2, "the third path");
     assert_eq!(points[0].color[..3], [255, 180, 0], "hue at full scale");

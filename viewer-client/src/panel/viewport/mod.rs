@@ -1,6 +1,7 @@
 //! The scene and its paths, and the user's hand on the camera.
 
 mod gesture;
+mod legend;
 mod overlay;
 mod picture;
 
@@ -24,7 +25,7 @@ impl Panel for Viewport {
         let pixels = rect.size() * ui.pixels_per_point();
         let size = [pixels.x.round().max(1.0) as u32, pixels.y.round().max(1.0) as u32];
         let picture = picture::of(world, size, ui.pixels_per_point());
-        let callback = ViewportCallback { picture };
+        let callback = ViewportCallback { picture, ctx: ui.ctx().clone() };
         ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, callback));
         overlay::paint(ui, rect, world);
     }

@@ -5,14 +5,13 @@ use egui::{
 };
 use glam::Vec3;
 
-use crate::command::ColorMode;
 use crate::format;
 use crate::status::LinkState;
 use crate::theme;
 use crate::world::World;
 
 /// Distance of texts from the edge in points.
-const MARGIN: f32 = 14.0;
+pub(super) const MARGIN: f32 = 14.0;
 
 /// Writes over the view.
 pub(super) fn paint(ui: &Ui, rect: Rect, world: &World<'_>) {
@@ -29,7 +28,7 @@ pub(super) fn paint(ui: &Ui, rect: Rect, world: &World<'_>) {
     }
     axes(&painter, rect, world, ink);
     captions(&painter, rect, world, ink);
-    legend(&painter, rect, world, ink);
+    super::legend::paint(&painter, rect, world, ink);
 }
 
 /// Darkens what the render camera does not see.
@@ -140,41 +139,9 @@ fn text(painter: &Painter, place: Pos2, anchor: Align2, text: &str, color: Color
 }
 
 /// Dims what lies behind light texts, and brightens it behind dark ones.
-fn veil(painter: &Painter, rect: Rect, ink: Color32) {
+pub(super) fn veil(painter: &Painter, rect: Rect, ink: Color32) {
     let light_ink = ink.intensity() > 0.4;
     let shade =
         if light_ink { Color32::from_black_alpha(130) } else { Color32::from_white_alpha(150) };
     painter.rect_filled(rect.expand2(vec2(7.0, 3.0)), 5.0, shade);
-}
-
-/// What the colours say, in the lower right corner.
-fn legend(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
-    let mut place = rect.right_bottom() + vec2(-MARGIN, -MARGIN);
-    let mut entry = |label: &str, color: Color32| {
-        let galley = painter.layout_no_wrap(label.to_owned(), FontId::proportional(12.0), ink);
-        let left = place - vec2(galley.size().x, galley.size().y);
-        let rect = Rect::from_min_max(left - vec2(16.0, 0.0), place);
-        veil(painter, rect, ink);
-        painter.circle_filled(left + vec2(-10.0, 0.5 * galley.size().y), 4.0, color);
-        painter.galley(left, galley, ink);
-        place.y -= 22.0;
-    };
-    let cloud = &world.settings.cloud;
-    if cloud.ends {
-        entry("end, at the camera", theme::CAMERA_END);
-        entry("start, on the light", theme::LIGHT_END);
-    }
-    match cloud.color {
-        ColorMode::Radiance => {}
-        ColorMode::Strategy => {
-            let names = world.status.welcome.as_ref().map(|w| w.strategies.as_slice());
-            for (index, name) in names.unwrap_or_default().iter().enumerate().rev() {
-                entry(name, theme::strategy_color(index));
-            }
-        }
-        ColorMode::Length => {
-            entry("10 edges and more", Color32::from_rgb(235, 40, 40));
-            entry("1 edge", Color32::from_rgb(40, 60, 235));
-        }
-    }
 }

@@ -1,11 +1,11 @@
 //! The choices of the user as numbers for the shaders.
 
-use egui::Rgba;
-use glam::{UVec4, Vec4};
-use shaders::{FrameUniforms, PALETTE_SIZE};
+use egui::{Color32, Rgba};
+use glam::{UVec4, Vec3, Vec4};
+use shaders::{FrameUniforms, PALETTE_SIZE, RAMP_SIZE};
 
-use crate::camera::NEAR;
-use crate::command::{ColorMode, Shading};
+use crate::camera::{Bounds, NEAR};
+use crate::command::{ColorMode, ColorScale, Marks, Shading};
 use crate::gpu::{PageRange, Picture};
 use crate::settings::SceneSettings;
 use crate::theme;
@@ -21,6 +21,8 @@ const AT_LENS: f32 = 0.06;
 const ON_LIGHT_GROUND: f32 = 1.7;
 /// How much crossing paths add up on dark ground: 0 cover, 1 add.
 const GLOW: f32 = 0.6;
+/// Smallest radius of dots that stand alone, in points.
+const LONE_DOT: f32 = 1.5;
 
 /// What to draw in a viewport of `size` pixels.
 pub(super) fn of(world: &World<'_>, size: [u32; 2], pixels_per_point: f32) -> Picture {
@@ -29,7 +31,9 @@ pub(super) fn of(world: &World<'_>, size: [u32; 2], pixels_per_point: f32) -> Pi
     let cloud = &world.settings.cloud;
     let dark = world.settings.layout.dark;
     let (darkest, brightest) = world.store.tone().range();
-    let start_dots = if cloud.ends { 0.9 * cloud.width + 0.6 } else { cloud.dots };
+    let inner_dots =
+        if cloud.marks == Marks::Lines { cloud.dots } else { cloud.dots.max(LONE_DOT) };
+    let start_dots = if cloud.ends { 0.9 * cloud.width + 0.6 } else { inner_dots };
     let uniforms = FrameUniforms {
         view_projection: lens.view_projection(),
         eye: lens.eye.extend(NEAR),
@@ -45,12 +49,21 @@ pub(super) fn of(world: &World<'_>, size: [u32; 2], pixels_per_point: f32) -> Pi
         tone: Vec4::new(
             darkest,
             1.0 / (brightest - darkest).max(1e-3),
-            cloud.dots * pixels_per_point,
+            inner_dots * pixels_per_point,
             if cloud.ends { 1.0 } else { 0.0 },
         ),
         surface: surface(&world.settings.scene),
-        count: UVec4::new(world.store.newest_ordinal(), color_code(cloud.color), 0, 0),
+        count: UVec4::new(
+            world.store.newest_ordinal(),
+            color_code(cloud.color),
+            u32::from(cloud.marks == Marks::Ends),
+            u32::from(cloud.scale == ColorScale::Log),
+        ),
+        clip: clip(&world.settings.scene, world.camera.bounds()),
+        cue: cue(world, lens.eye),
+        constant: linear(theme::ACCENT),
         palette: palette(),
+        ramp: ramp(dark),
     };
     let ranges = world.store.newest(cloud.shown as usize);
     Picture {
@@ -58,6 +71,7 @@ pub(super) fn of(world: &World<'_>, size: [u32; 2], pixels_per_point: f32) -> Pi
         uniforms,
         paths: ranges.into_iter().map(|(serial, first)| PageRange { serial, first }).collect(),
         surfaces: world.settings.scene.shading != Shading::Off,
+        lines: cloud.marks == Marks::Lines,
     }
 }
 
@@ -86,9 +100,38 @@ fn color_code(mode: ColorMode) -> u32 {
         ColorMode::Radiance => 0,
         ColorMode::Strategy => 1,
         ColorMode::Length => 2,
+        ColorMode::Luminance => 3,
+        ColorMode::Age => 4,
+        ColorMode::Kind => 5,
+        ColorMode::Chain => 6,
+        ColorMode::Class => 7,
+        ColorMode::Constant => 8,
     }
 }
 
 fn palette() -> [Vec4; PALETTE_SIZE] {
-    std::array::from_fn(|index| Rgba::from(theme::strategy_color(index)).to_array().into())
+    std::array::from_fn(|index| linear(theme::strategy_color(index)))
+}
+
+fn ramp(dark: bool) -> [Vec4; RAMP_SIZE] {
+    theme::ramp(dark).map(linear)
+}
+
+fn linear(color: Color32) -> Vec4 {
+    Rgba::from(color).to_array().into()
+}
+
+/// The plane whose positive side is drawn; without one, everything lies there.
+fn clip(scene: &SceneSettings, bounds: Bounds) -> Vec4 {
+    let Some(normal) = scene.clip.normal().map(Vec3::from) else { return Vec4::W };
+    let place = bounds.min.lerp(bounds.max, scene.cut);
+    normal.extend(-normal.dot(place))
+}
+
+/// The depth cue begins where the scene does.
+fn cue(world: &World<'_>, eye: Vec3) -> Vec4 {
+    let cloud = &world.settings.cloud;
+    let (centre, radius) = (world.camera.bounds().centre(), world.camera.bounds().radius());
+    let begin = ((centre - eye).length() - radius).max(0.0);
+    Vec4::new(cloud.cue, begin, 0.5 / radius, cloud.dim)
 }

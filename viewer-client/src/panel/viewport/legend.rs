@@ -1,0 +1,133 @@
+//! What the colours say, in the lower right corner.
+
+use common::VertexKind;
+use egui::{Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, epaint::Mesh, pos2, vec2};
+
+use super::overlay::{MARGIN, veil};
+use crate::command::{ColorMode, ColorScale};
+use crate::format;
+use crate::theme;
+use crate::world::World;
+
+/// Width of the ramp in points.
+const RAMP_WIDTH: f32 = 168.0;
+/// Chains that have a colour of their own.
+const CHAIN_COLORS: usize = 16;
+
+/// Writes the legend.
+pub(super) fn paint(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
+    let place = rect.right_bottom() + vec2(-MARGIN, -MARGIN);
+    let mut column = Column { painter, place, ink };
+    let cloud = &world.settings.cloud;
+    if cloud.ends {
+        column.entry("end, at the camera", theme::CAMERA_END);
+        column.entry("start, on the light", theme::LIGHT_END);
+    }
+    let ramp = theme::ramp(world.settings.layout.dark);
+    let scale = cloud.scale;
+    match cloud.color {
+        ColorMode::Radiance | ColorMode::Constant => {}
+        ColorMode::Strategy => {
+            let names = world.status.welcome.as_ref().map(|w| w.strategies.as_slice());
+            for (index, name) in names.unwrap_or_default().iter().enumerate().rev() {
+                column.entry(name, theme::strategy_color(index));
+            }
+        }
+        ColorMode::Length => {
+            column.ramp(&format!("edges ({scale})"), "1", "10 and more", &ramp);
+        }
+        ColorMode::Luminance => {
+            let (low, high) = world.store.tone().range();
+            let lowest = match scale {
+                ColorScale::Log => format!("{:.1e}", low.exp2()),
+                ColorScale::Linear => "0".to_owned(),
+            };
+            let title = format!("luminance ({scale})");
+            column.ramp(&title, &lowest, &format!("{:.1e}", high.exp2()), &ramp);
+        }
+        ColorMode::Age => {
+            let oldest =
+                format!("{} paths ago and more", format::count(3.0 * f64::from(cloud.fade)));
+            column.ramp("age", &oldest, "now", &ramp);
+        }
+        ColorMode::Kind => kinds(&mut column),
+        ColorMode::Chain => {
+            column.entry(&format!("each {CHAIN_COLORS}th chain alike"), theme::strategy_color(0));
+        }
+        ColorMode::Class => {
+            let names = world.store.classes().names();
+            if names.len() == CHAIN_COLORS - 1 {
+                column.entry("other classes", theme::strategy_color(CHAIN_COLORS - 1));
+            }
+            for (index, name) in names.iter().enumerate().rev() {
+                column.entry(name, theme::strategy_color(index));
+            }
+        }
+    }
+}
+
+fn kinds(column: &mut Column<'_>) {
+    // Kinds travel as numbers below eight.
+    for code in (0..8).rev() {
+        if let Some(kind) = VertexKind::from_code(code) {
+            let label = format!("{}  {kind:?}", kind.letter());
+            column.entry(&label, theme::strategy_color(usize::from(code)));
+        }
+    }
+}
+
+/// Entries one over the other, from the bottom up.
+struct Column<'a> {
+    painter: &'a Painter,
+    place: Pos2,
+    ink: Color32,
+}
+
+impl Column<'_> {
+    fn entry(&mut self, label: &str, color: Color32) {
+        let font = FontId::proportional(12.0);
+        let galley = self.painter.layout_no_wrap(label.to_owned(), font, self.ink);
+        let left = self.place - galley.size();
+        let rect = Rect::from_min_max(left - vec2(16.0, 0.0), self.place);
+        veil(self.painter, rect, self.ink);
+        self.painter.circle_filled(left + vec2(-10.0, 0.5 * galley.size().y), 4.0, color);
+        self.painter.galley(left, galley, self.ink);
+        self.place.y -= 22.0;
+    }
+
+    fn ramp(&mut self, title: &str, low: &str, high: &str, colors: &[Color32]) {
+        let font = FontId::proportional(12.0);
+        let height = 46.0;
+        let rect = Rect::from_min_max(self.place - vec2(RAMP_WIDTH, height), self.place);
+        veil(self.painter, rect, self.ink);
+        let text = |place: Pos2, anchor: egui::Align2, text: &str| {
+            self.painter.text(place, anchor, text, font.clone(), self.ink);
+        };
+        text(rect.center_top(), egui::Align2::CENTER_TOP, title);
+        text(rect.left_bottom(), egui::Align2::LEFT_BOTTOM, low);
+        text(rect.right_bottom(), egui::Align2::RIGHT_BOTTOM, high);
+        let band = Rect::from_min_max(
+            pos2(rect.left(), rect.top() + 18.0),
+            pos2(rect.right(), rect.top() + 28.0),
+        );
+        self.painter.add(Shape::mesh(gradient(band, colors)));
+        let edge = Stroke::new(1.0, self.ink.gamma_multiply(0.4));
+        self.painter.rect_stroke(band, 0.0, edge, egui::StrokeKind::Outside);
+        self.place.y -= height + 8.0;
+    }
+}
+
+fn gradient(band: Rect, colors: &[Color32]) -> Mesh {
+    let mut mesh = Mesh::default();
+    let last = colors.len().saturating_sub(1).max(1) as f32;
+    for (i, color) in (0_u32..).zip(colors) {
+        let x = band.left() + band.width() * i as f32 / last;
+        mesh.colored_vertex(pos2(x, band.top()), *color);
+        mesh.colored_vertex(pos2(x, band.bottom()), *color);
+        if i > 0 {
+            mesh.add_triangle(2 * i - 2, 2 * i - 1, 2 * i);
+            mesh.add_triangle(2 * i - 1, 2 * i, 2 * i + 1);
+        }
+    }
+    mesh
+}
