@@ -31,6 +31,7 @@ const TRANSPORT: &[&str] = &[
     "tracer-server/src/film",
     "tracer-server/src/render",
     "tracer-server/src/engine",
+    "tracer-server/src/verify",
 ];
 
 const RULES: &[Rule] = &[

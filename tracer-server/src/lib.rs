@@ -16,3 +16,4 @@ pub mod path;
 pub mod render;
 pub mod scene;
 pub mod service;
+pub mod verify;

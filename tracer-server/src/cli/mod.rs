@@ -8,9 +8,11 @@ pub mod chains;
 pub mod info;
 pub mod input;
 mod inventory;
+mod meter;
 pub mod render;
 pub mod scenes;
 pub mod serve;
+pub mod verify;
 
 use std::io::{self, IsTerminal as _, Write as _};
 use std::process::ExitCode;
@@ -34,6 +36,7 @@ Examples:
   tracer-server info door
   tracer-server render door -o door.png
   tracer-server serve cornell --seed 7
+  tracer-server verify door
 
 Exit codes: 0 done, 1 a check failed, 2 bad usage or input."
 )]
@@ -54,6 +57,7 @@ pub enum Command {
     Render(render::RenderArgs),
     Scenes(scenes::ScenesArgs),
     Info(info::InfoArgs),
+    Verify(verify::VerifyArgs),
 }
 
 impl Command {
@@ -63,6 +67,7 @@ impl Command {
             Self::Render(args) => render::run(args),
             Self::Scenes(args) => scenes::run(args),
             Self::Info(args) => info::run(args),
+            Self::Verify(args) => verify::run(args),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `tracer-server render`: one image, and the story of how it was made.
 
-use std::io::{self, IsTerminal as _, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -11,10 +11,10 @@ use clap::{Args, ValueEnum};
 use comfy_table::Table;
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use common::{mean_ratio, relative_mse};
-use indicatif::{ProgressBar, ProgressStyle};
 
 use super::chains::ChainArgs;
 use super::input::{self, FilmSize};
+use super::meter::Meter;
 use crate::image_file;
 use crate::render::{Budget, Integrator, Progress, RenderSettings, Rendering, Report, render};
 use crate::scene::MAX_EDGES;
@@ -123,8 +123,9 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<ExitCode> {
         },
         ensemble: args.chains.ensemble(&scene, &wishes)?,
     };
-    let mut meter = Meter::new(scene.name(), settings.integrator);
-    let Rendering { image, mut report } = render(&scene, &settings, |at| meter.show(at));
+    let what = format!("{}, {}", scene.name(), settings.integrator.name());
+    let meter = Meter::new(what, "rendered");
+    let Rendering { image, mut report } = render(&scene, &settings, |at| show(&meter, at));
     meter.finish();
     if let Some(reference) = &reference {
         report.relative_mse = Some(relative_mse(image.pixels(), reference.pixels()));
@@ -167,52 +168,10 @@ fn metadata(report: &Report) -> Vec<(String, String)> {
     entries.map(|(key, value)| (format!("lvis.{key}"), value.to_string())).into()
 }
 
-/// A progress bar on a terminal, a line for each tenth elsewhere.
-struct Meter {
-    bar: Option<ProgressBar>,
-    told: usize,
-}
-
-impl Meter {
-    const STEPS: u64 = 1000;
-
-    fn new(scene: &str, integrator: Integrator) -> Self {
-        let bar = io::stderr().is_terminal().then(|| {
-            let bar = ProgressBar::new(Self::STEPS);
-            let style = "{prefix} {wide_bar} {percent:>3} %  {elapsed} passed, {eta} left  {msg}";
-            if let Ok(style) = ProgressStyle::with_template(style) {
-                bar.set_style(style);
-            }
-            bar.set_prefix(format!("{scene}, {}", integrator.name()));
-            bar
-        });
-        Self { bar, told: 0 }
-    }
-
-    fn show(&mut self, progress: Progress) {
-        match (progress, &self.bar) {
-            (Progress::Seeding(samples), Some(bar)) => {
-                bar.set_message(format!("seeding: {samples} samples"));
-            }
-            (Progress::Rendering(share), Some(bar)) => {
-                bar.set_message("");
-                bar.set_position((share * Self::STEPS as f64) as u64);
-            }
-            (Progress::Seeding(samples), None) => tracing::info!("seeding: {samples} samples"),
-            (Progress::Rendering(share), None) => {
-                let tenth = (share * 10.0) as usize;
-                if tenth > self.told {
-                    self.told = tenth;
-                    tracing::info!("rendered {} %", 10 * tenth);
-                }
-            }
-        }
-    }
-
-    fn finish(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
+fn show(meter: &Meter, progress: Progress) {
+    match progress {
+        Progress::Seeding(samples) => meter.tell(format!("seeding: {samples} samples")),
+        Progress::Rendering(share) => meter.show(share, ""),
     }
 }
 

@@ -17,6 +17,10 @@ pub enum Stream {
     PathTracer = 4,
     /// One block of samples of the bidirectional path tracer.
     Bidirectional = 5,
+    /// What `verify` draws on a user's scene.
+    Verification = 7,
+    /// The census of a scene's light before the chains start.
+    Census = 8,
     /// Tests and benchmarks.
     Laboratory = 6,
 }

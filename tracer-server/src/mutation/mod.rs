@@ -120,6 +120,58 @@ pub fn propose<M: Mutation>(
     Ok(Proposal { ratio: backward / forward, kept_light, kept_eye })
 }
 
+/// One move and its reverse, looked at closely.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inspection {
+    /// The ratio of the move.
+    pub forth: f64,
+    /// The ratio of the reverse move, computed as if it had been drawn.
+    pub back: f64,
+    /// The strategy applies to the proposal, so the reverse move can be drawn.
+    pub applies_back: bool,
+    /// What is wrong with the proposal itself.
+    pub flaw: Option<Flaw>,
+}
+
+/// An error that shows in a single proposal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flaw {
+    /// Vertices that the strategy claims to keep are not the same in both paths.
+    NotKept,
+    /// A cached value is not that of the vertices.
+    Stale,
+}
+
+/// Draws a move and looks at it closely.
+pub fn inspect<M: Mutation>(
+    mutation: &M,
+    scene: &Tracer<'_>,
+    x: &Path,
+    rng: &mut Rng,
+    draft: &mut Draft,
+    y: &mut Path,
+) -> Result<Inspection, Failure> {
+    let via = mutation.propose(scene, x, rng, draft, y)?;
+    let reverse = mutation.reverse(via);
+    let forth = mutation.transition(y, x, reverse) / mutation.transition(x, y, via);
+    let again = mutation.reverse(reverse);
+    let back = mutation.transition(x, y, again) / mutation.transition(y, x, reverse);
+    let (light, eye) = mutation.kept(x, via);
+    let (xv, yv) = (x.vertices(), y.vertices());
+    let shared = |from_x: Option<usize>, from_y: Option<usize>| match (from_x, from_y) {
+        (Some(a), Some(b)) => xv.get(a..) == yv.get(b..),
+        _ => false,
+    };
+    let ends = (xv.len().checked_sub(eye), yv.len().checked_sub(eye));
+    let keeps = light <= xv.len() && xv.get(..light) == yv.get(..light) && shared(ends.0, ends.1);
+    let flaw = match (keeps, y.is_fresh(scene)) {
+        (false, _) => Some(Flaw::NotKept),
+        (true, false) => Some(Flaw::Stale),
+        (true, true) => None,
+    };
+    Ok(Inspection { forth, back, applies_back: mutation.applicable(y), flaw })
+}
+
 /// One entry of the table of strategies.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
@@ -186,6 +238,20 @@ macro_rules! strategies {
             ) -> Result<Proposal, Failure> {
                 match self {
                     $(Self::$variant(mutation) => propose(mutation, scene, x, rng, draft, y),)*
+                }
+            }
+
+            /// Draws a move and looks at it closely.
+            pub fn inspect(
+                &self,
+                scene: &Tracer<'_>,
+                x: &Path,
+                rng: &mut Rng,
+                draft: &mut Draft,
+                y: &mut Path,
+            ) -> Result<Inspection, Failure> {
+                match self {
+                    $(Self::$variant(mutation) => inspect(mutation, scene, x, rng, draft, y),)*
                 }
             }
         }

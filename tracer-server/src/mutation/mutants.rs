@@ -3,7 +3,6 @@
 use glam::DVec2;
 
 use super::caustic::chain_pdf;
-use super::laws::Propose;
 use super::retrace::{displace, from_lens, walk_pdf};
 use super::{
     Bidirectional, CausticPerturbation, Ends, Independent, LensPerturbation, LensSubpath,
@@ -12,6 +11,7 @@ use super::{
 use crate::math::{Rng, TorusStep};
 use crate::path::{Draft, Failure, Path, Strand, Tape};
 use crate::scene::Tracer;
+use crate::verify::invariance::Propose;
 
 /// A strategy that is wrong in one place.
 pub(super) struct Mutant<'a> {

@@ -8,6 +8,7 @@
 
 mod assemble;
 mod bidirectional;
+mod class;
 mod failure;
 mod numbers;
 mod record;
@@ -18,6 +19,7 @@ mod walk;
 
 pub use assemble::Splice;
 pub use bidirectional::BidirectionalSampler;
+pub use class::ClassKey;
 pub use failure::Failure;
 pub use numbers::{Numbers, ROW, Strand};
 pub use resample::{Draft, Range, end_on_light, open_for_connection, resample};
@@ -30,7 +32,7 @@ use common::Rgb;
 use glam::{DVec2, DVec3};
 
 use crate::bsdf::Scattering;
-use crate::scene::MAX_EDGES;
+use crate::scene::{MAX_EDGES, Tracer};
 
 /// Most vertices a path can have.
 pub const MAX_VERTICES: usize = MAX_EDGES + 1;
@@ -186,6 +188,22 @@ impl Path {
     pub fn first_diffuse_from_eye(&self) -> usize {
         let last = self.edge_count() - 1;
         (1..=last).rev().find(|&j| self.is_connectable(j)).unwrap_or(0)
+    }
+
+    /// Builds the path anew from its vertices and compares every cached value; false when one is
+    /// stale.
+    pub fn is_fresh(&self, scene: &Tracer<'_>) -> bool {
+        let lens = Self::at_lens(scene);
+        let splice = Splice {
+            base: &lens,
+            kept_light: 0,
+            light: &self.vertices[..self.vertices.len().saturating_sub(1)],
+            eye: &[],
+            kept_from: 0,
+            film: Some(self.film),
+        };
+        let mut fresh = Self::default();
+        fresh.splice(scene, &splice).is_ok() && fresh == *self
     }
 
     /// Heckbert's class, such as `LDSE`.
