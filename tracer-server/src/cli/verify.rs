@@ -196,7 +196,7 @@ fn conclude(out: &mut impl Write, report: &Report) -> io::Result<()> {
         writeln!(out, "FAIL {}, {}: {}", finding.subject, finding.law, meaning(finding.law))?;
     }
     for finding in with(Verdict::Note) {
-        writeln!(out, "note {}, {}: {}", finding.subject, finding.law, meaning(finding.law))?;
+        writeln!(out, "note {}, {}: {}", finding.subject, finding.law, note(finding.law))?;
     }
     let unjudged = with(Verdict::Unjudged).count();
     if unjudged > 0 {
@@ -230,8 +230,18 @@ fn meaning(law: &str) -> &'static str {
              a number of `transition` is NaN or negative."
         }
         "visits of classes" => {
-            "chains are in these classes more or less often than light is: a strategy is wrong, or \
-             the mixture cannot get there."
+            "chains are in these classes more or less often than light is: a strategy is wrong."
+        }
+        _ => "see `tracer-server verify --help`.",
+    }
+}
+
+/// What is worth knowing though no law is broken, in plain words.
+fn note(law: &str) -> &'static str {
+    match law {
+        "visits of classes" => {
+            "each of these carries more than 0.01 % of the light, but the chains did not come by: \
+             more steps, or a strategy that gets there, would help."
         }
         "longest rejection run" => {
             "one path stands for so much of the image that it may show as a bright dot; more chains \
@@ -245,7 +255,7 @@ fn meaning(law: &str) -> &'static str {
             "without starting anew, chains were not seen to get from one island to the other, so \
              these depend on the independent mutation."
         }
-        _ => "see the documentation of the law.",
+        _ => "see `tracer-server verify --help`.",
     }
 }
 

@@ -122,7 +122,7 @@ fn visits_finding(rows: &[ClassVisits], plan: &Plan) -> Finding {
         (false, ..) => {
             (Verdict::Fail, format!("not as often as light flows: {}", wrong.join(", ")))
         }
-        (true, false, _) => (Verdict::Note, format!("never visited: {}", missed.join(", "))),
+        (true, false, _) => (Verdict::Note, some(&missed)),
         (true, true, true) => (Verdict::Unjudged, String::new()),
         (true, true, false) => (Verdict::Pass, String::new()),
     };
@@ -135,6 +135,13 @@ fn visits_finding(rows: &[ClassVisits], plan: &Plan) -> Finding {
         remark,
         ..finding("visits of classes", steps)
     }
+}
+
+fn some(missed: &[&str]) -> String {
+    const LISTED: usize = 5;
+    let names = missed.iter().take(LISTED).copied().collect::<Vec<_>>().join(", ");
+    let more = if missed.len() > LISTED { ", ..." } else { "" };
+    format!("{} classes never visited: {names}{more}", missed.len())
 }
 
 fn dwell_finding(dwell: u64, steps: u64) -> Finding {

@@ -222,6 +222,8 @@ impl<'s> Bench<'s> {
         let count = functionals::names().len();
         gathered.watched.resize(count, Watched::default());
         hand.sums.resize(count, 0.0);
+        // Evenly spread displacements go on from a number that no other worker has a say in.
+        hand.draft.displacements = number << 24;
         // Even numbers feed the sampler, odd ones the strategy.
         let key = |index: u64| run.number << 44 | index << 1;
         let mut rng = Rng::new(run.seed, Stream::Verification, key(number));

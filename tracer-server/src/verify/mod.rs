@@ -262,7 +262,7 @@ fn verify_one(
     let not_finite = steps.not_finite + proposals.not_finite;
     if not_finite > 0 {
         reversal.verdict = Verdict::Fail;
-        reversal.remark += &format!("; {not_finite} ratios were NaN or negative");
+        reversal.remark = format!("{not_finite} ratios were NaN or negative");
     }
     report.findings.push(reversal);
     proposals
