@@ -3,7 +3,7 @@
 use common::{Event, Rgb};
 use glam::DVec3;
 
-use super::{Scatter, Scattering, reflect};
+use super::{Scatter, Scattering, fresnel, reflect};
 use crate::math::{Rng, below_one};
 
 /// Reflects and refracts by Fresnel's equations; absorbs only through its tints.
@@ -19,46 +19,36 @@ pub struct Dielectric {
 
 impl Dielectric {
     /// Index of refraction beyond the surface over the one on the side of `w`.
-    fn relative_eta(&self, n: DVec3, w: DVec3) -> f64 {
+    #[inline]
+    pub(super) fn relative_eta(&self, n: DVec3, w: DVec3) -> f64 {
         if n.dot(w) > 0.0 { self.eta } else { 1.0 / self.eta }
     }
 
     /// The direction of refraction of `w`, or `None` at total internal reflection.
     fn refract(&self, n: DVec3, w: DVec3) -> Option<DVec3> {
-        let eta = self.relative_eta(n, w);
         let facing = if n.dot(w) > 0.0 { n } else { -n };
-        let cos_i = facing.dot(w);
-        let cos2_t = 1.0 - (1.0 - cos_i * cos_i) / (eta * eta);
-        (cos2_t > 0.0).then(|| ((cos_i / eta - cos2_t.sqrt()) * facing - w / eta).normalize())
+        refract(facing, w, self.relative_eta(n, w))
     }
 }
 
-/// Fresnel reflectance of unpolarised light that arrives at `cos_i > 0` on a boundary with relative
-/// index `eta` (beyond over this side). One at grazing incidence and at total internal reflection.
-fn fresnel(cos_i: f64, eta: f64) -> f64 {
-    if eta == 1.0 {
-        return 0.0;
-    }
-    let cos_i = cos_i.min(1.0);
+/// The direction of refraction of `w` at a boundary with the normal `facing` on the side of `w`
+/// and the relative index `eta` (beyond over this side); `None` at total internal reflection.
+#[inline]
+pub(super) fn refract(facing: DVec3, w: DVec3, eta: f64) -> Option<DVec3> {
+    let cos_i = facing.dot(w);
     let cos2_t = 1.0 - (1.0 - cos_i * cos_i) / (eta * eta);
-    if !(cos2_t > 0.0) || !(cos_i > 0.0) {
-        return 1.0;
-    }
-    let cos_t = cos2_t.sqrt();
-    let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-    let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    0.5 * (parallel * parallel + perpendicular * perpendicular)
+    (cos2_t > 0.0).then(|| ((cos_i / eta - cos2_t.sqrt()) * facing - w / eta).normalize())
 }
 
 impl Scatter for Dielectric {
     fn sample(&self, n: DVec3, w: DVec3, [u, ..]: [f64; 3]) -> Option<(DVec3, Event)> {
-        let reflected = fresnel(n.dot(w).abs(), self.relative_eta(n, w));
+        let reflected = fresnel::dielectric(n.dot(w).abs(), self.relative_eta(n, w));
         let event = if u < reflected { Event::Reflect } else { Event::Transmit };
         self.follow(n, w, event).map(|direction| (direction, event))
     }
 
     fn invert(&self, n: DVec3, w: DVec3, _: DVec3, event: Event, rng: &mut Rng) -> [f64; 3] {
-        let reflected = fresnel(n.dot(w).abs(), self.relative_eta(n, w));
+        let reflected = fresnel::dielectric(n.dot(w).abs(), self.relative_eta(n, w));
         let [u, rest @ ..] = rng.array::<3>();
         let choice = match event {
             Event::Reflect => u * reflected,
@@ -69,7 +59,7 @@ impl Scatter for Dielectric {
 
     fn evaluate(&self, n: DVec3, w_l: DVec3, w_e: DVec3, event: Event) -> Option<Scattering> {
         let (cos_l, cos_e) = (n.dot(w_l), n.dot(w_e));
-        let reflected = fresnel(cos_l.abs(), self.relative_eta(n, w_l));
+        let reflected = fresnel::dielectric(cos_l.abs(), self.relative_eta(n, w_l));
         let (color, probability, eye_weight) = match event {
             Event::Reflect if cos_l * cos_e > 0.0 => (self.reflectance, reflected, 1.0),
             Event::Transmit if cos_l * cos_e < 0.0 => {

@@ -1,16 +1,23 @@
-//! Ideal mirror reflection on both sides of a surface.
+//! Mirror reflection on both sides of a smooth opaque surface.
 
 use common::{Event, Rgb};
 use glam::DVec3;
 
-use super::{Scatter, Scattering, reflect};
+use super::{Fresnel, Scatter, Scattering, reflect};
 use crate::math::Rng;
 
 /// Reflects into the one mirrored direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mirror {
-    /// Reflectance at every angle, each channel in [0, 1].
-    pub reflectance: Rgb,
+    /// How much.
+    pub fresnel: Fresnel,
+}
+
+impl Mirror {
+    /// Of the same reflectance at every angle, each channel in [0, 1].
+    pub const fn new(reflectance: Rgb) -> Self {
+        Self { fresnel: Fresnel::Constant(reflectance) }
+    }
 }
 
 impl Scatter for Mirror {
@@ -23,11 +30,11 @@ impl Scatter for Mirror {
     }
 
     fn evaluate(&self, n: DVec3, w_l: DVec3, w_e: DVec3, event: Event) -> Option<Scattering> {
-        let lit = n.dot(w_l) * n.dot(w_e) > 0.0
-            && event == Event::Reflect
-            && !self.reflectance.is_black();
+        let cos_l = n.dot(w_l);
+        let color = self.fresnel.at(cos_l.abs());
+        let lit = cos_l * n.dot(w_e) > 0.0 && event == Event::Reflect && !color.is_black();
         lit.then_some(Scattering {
-            color: self.reflectance,
+            color,
             connection: 0.0,
             light_weight: 1.0,
             eye_weight: 1.0,
@@ -37,7 +44,8 @@ impl Scatter for Mirror {
     }
 
     fn follow(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
-        (event == Event::Reflect && !self.reflectance.is_black()).then(|| reflect(n, w))
+        let reflects = event == Event::Reflect && !self.fresnel.at(n.dot(w).abs()).is_black();
+        reflects.then(|| reflect(n, w))
     }
 
     fn connectable(&self) -> Option<Event> {
@@ -45,6 +53,6 @@ impl Scatter for Mirror {
     }
 
     fn albedo(&self) -> f64 {
-        self.reflectance.max_channel()
+        self.fresnel.at(1.0).max_channel()
     }
 }

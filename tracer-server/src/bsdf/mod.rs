@@ -3,9 +3,15 @@
 //! To add a model: write its file with an `impl Scatter`, add a variant to [`Bsdf`] and one arm to
 //! `model!`; the laws in `laws.rs` then hold it to account.
 
+mod conductor;
 mod dielectric;
+mod fresnel;
+mod ggx;
 mod lambert;
 mod mirror;
+mod plastic;
+mod rough_dielectric;
+mod rough_plastic;
 
 #[cfg(test)]
 mod laws;
@@ -14,9 +20,15 @@ use common::{Event, Rgb};
 use glam::DVec3;
 
 use crate::math::Rng;
+pub use conductor::RoughConductor;
 pub use dielectric::Dielectric;
+pub use fresnel::Fresnel;
+pub use ggx::{Ggx, SMOOTH};
 pub use lambert::Lambert;
 pub use mirror::Mirror;
+pub use plastic::{Plastic, deepened};
+pub use rough_dielectric::RoughDielectric;
+pub use rough_plastic::RoughPlastic;
 
 /// Everything a path needs of one scattering vertex, given both neighbours and the event.
 ///
@@ -69,7 +81,7 @@ pub trait Scatter {
     /// The event with which a vertex can be joined to any other by an explicit connection.
     fn connectable(&self) -> Option<Event>;
 
-    /// Upper bound of the reflectance, for Russian roulette.
+    /// About how much of the light is scattered, at most 1: for Russian roulette.
     fn albedo(&self) -> f64;
 }
 
@@ -82,6 +94,14 @@ pub enum Bsdf {
     Mirror(Mirror),
     /// Smooth boundary of transparent media.
     Dielectric(Dielectric),
+    /// Rough metal.
+    RoughConductor(RoughConductor),
+    /// Rough boundary of transparent media.
+    RoughDielectric(RoughDielectric),
+    /// Diffuse under a smooth coat.
+    Plastic(Plastic),
+    /// Diffuse under a rough coat.
+    RoughPlastic(RoughPlastic),
 }
 
 /// Calls a method of the model behind the variant: the only match on [`Bsdf`].
@@ -91,6 +111,10 @@ macro_rules! model {
             Bsdf::Lambert($model) => $call,
             Bsdf::Mirror($model) => $call,
             Bsdf::Dielectric($model) => $call,
+            Bsdf::RoughConductor($model) => $call,
+            Bsdf::RoughDielectric($model) => $call,
+            Bsdf::Plastic($model) => $call,
+            Bsdf::RoughPlastic($model) => $call,
         }
     };
 }

@@ -5,11 +5,11 @@ use glam::DVec3;
 use thiserror::Error;
 
 use super::accel::{Accel, Anchor};
-use super::description::{BsdfDescription, Material, SceneDescription};
+use super::description::SceneDescription;
+use super::appearance::surface;
 use super::emitter::Emitters;
 use super::surface::{Ball, NO_PRIMITIVE, Triangle};
-use super::{MAX_EDGES, NO_EMITTER, Primitive, Scene, SceneFeatures, SurfaceMaterial, hash};
-use crate::bsdf::{Bsdf, Dielectric, Lambert, Mirror};
+use super::{MAX_EDGES, NO_EMITTER, Primitive, Scene, SceneFeatures, hash};
 
 /// Why a description makes no scene.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -251,22 +251,4 @@ fn light_up(
         *radiance = *radiance / radiance_scale;
     }
     (Emitters::new(&sources), primitives, radiance_scale)
-}
-
-fn surface(
-    description: &SceneDescription,
-    material: &Material,
-    emission_factor: f64,
-) -> SurfaceMaterial {
-    let bsdf = match material.bsdf {
-        BsdfDescription::Lambert { reflectance } => {
-            Bsdf::Lambert(Lambert { reflectance: description.mean_color(reflectance) })
-        }
-        BsdfDescription::Mirror { reflectance } => Bsdf::Mirror(Mirror { reflectance }),
-        BsdfDescription::Dielectric { eta, reflectance, transmittance } => {
-            Bsdf::Dielectric(Dielectric { eta, reflectance, transmittance })
-        }
-    };
-    let emission = material.emission * emission_factor;
-    SurfaceMaterial { name: material.name.clone(), bsdf, emission }
 }

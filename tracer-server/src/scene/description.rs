@@ -5,7 +5,7 @@
 use common::{CameraPose, Rgb};
 use glam::{DVec3, Vec2, Vec3};
 
-pub use super::material::{BsdfDescription, Coding, ColorInput, Material, Texture};
+pub use super::material::{BsdfDescription, Coding, ColorInput, Material, NumberInput, Texture};
 
 /// A whole scene in the units of its file.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +39,17 @@ impl SceneDescription {
             ColorInput::Texture { texture, factor } => {
                 let texture = self.textures.get(usize::from(texture));
                 texture.map_or(Rgb::BLACK, Texture::mean) * factor
+            }
+        }
+    }
+
+    /// The number of an input on the average over its texture; zero where there is no such texture.
+    pub fn mean_number(&self, input: NumberInput) -> f64 {
+        match input {
+            NumberInput::Constant(number) => number,
+            NumberInput::Texture { texture, factor } => {
+                let factor = Rgb::grey(factor);
+                self.mean_color(ColorInput::Texture { texture, factor }).luminance()
             }
         }
     }

@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use super::SceneDescription;
-use super::description::BsdfDescription;
 
 /// What the transport code may have to deal with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -21,7 +20,7 @@ impl SceneFeatures {
             description
                 .materials
                 .get(usize::from(material))
-                .is_some_and(|m| !matches!(m.bsdf, BsdfDescription::Lambert { .. }))
+                .is_some_and(|m| m.bsdf.has_dirac_lobe())
         };
         let mut used = description
             .meshes

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::SceneDescription;
-use super::description::{BsdfDescription, ColorInput};
+use super::description::{BsdfDescription, ColorInput, NumberInput};
+use crate::bsdf::Fresnel;
 use common::Rgb;
 
 /// Hex digest of everything that the picture depends on, names included.
@@ -94,6 +95,41 @@ impl Digest {
         }
     }
 
+    fn number_input(&mut self, input: NumberInput) {
+        match input {
+            NumberInput::Constant(number) => {
+                self.count(0);
+                self.number(number);
+            }
+            NumberInput::Texture { texture, factor } => {
+                self.count(1 + usize::from(texture));
+                self.number(factor);
+            }
+        }
+    }
+
+    fn fresnel(&mut self, fresnel: Fresnel) {
+        match fresnel {
+            Fresnel::Constant(color) => {
+                self.count(0);
+                self.color(color);
+            }
+            Fresnel::Schlick(color) => {
+                self.count(1);
+                self.color(color);
+            }
+            Fresnel::Conductor { eta, k, tint } => {
+                self.count(2);
+                [eta, k, tint].into_iter().for_each(|c| self.color(c));
+            }
+            Fresnel::Dielectric { eta, tint } => {
+                self.count(3);
+                self.number(eta);
+                self.color(tint);
+            }
+        }
+    }
+
     fn bsdf(&mut self, bsdf: &BsdfDescription) {
         match *bsdf {
             BsdfDescription::Lambert { reflectance } => {
@@ -109,6 +145,25 @@ impl Digest {
                 self.number(eta);
                 self.color(reflectance);
                 self.color(transmittance);
+            }
+            BsdfDescription::RoughDielectric { eta, reflectance, transmittance, roughness } => {
+                self.count(3);
+                self.number(eta);
+                self.color(reflectance);
+                self.color(transmittance);
+                self.number_input(roughness);
+            }
+            BsdfDescription::Conductor { fresnel, roughness } => {
+                self.count(4);
+                self.fresnel(fresnel);
+                self.number_input(roughness);
+            }
+            BsdfDescription::Plastic { diffuse, fresnel, roughness, nonlinear } => {
+                self.count(5);
+                self.color_input(diffuse);
+                self.fresnel(fresnel);
+                self.number(roughness);
+                self.count(usize::from(nonlinear));
             }
         }
     }

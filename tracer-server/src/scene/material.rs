@@ -2,6 +2,8 @@
 
 use common::Rgb;
 
+use crate::bsdf::Fresnel;
+
 /// How a surface scatters and emits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
@@ -45,6 +47,56 @@ pub enum BsdfDescription {
         /// Tint of refracted light, each channel in [0, 1].
         transmittance: Rgb,
     },
+    /// A rough boundary between two transparent media.
+    RoughDielectric {
+        /// Index of refraction behind the surface over the one in front of it.
+        eta: f64,
+        /// Tint of reflected light, each channel in [0, 1].
+        reflectance: Rgb,
+        /// Tint of refracted light, each channel in [0, 1].
+        transmittance: Rgb,
+        /// Roughness of the facets: alpha of GGX, in [0, 1].
+        roughness: NumberInput,
+    },
+    /// A metal.
+    Conductor {
+        /// What it, or a facet of it, reflects.
+        fresnel: Fresnel,
+        /// Roughness of the facets: alpha of GGX, in [0, 1]; 0 is a mirror.
+        roughness: NumberInput,
+    },
+    /// Diffuse paint under a transparent coat.
+    Plastic {
+        /// Albedo of the base, each channel in [0, 1].
+        diffuse: ColorInput,
+        /// What the coat, or a facet of it, reflects.
+        fresnel: Fresnel,
+        /// Roughness of the coat: alpha of GGX, in [0, 1]; 0 is smooth.
+        roughness: f64,
+        /// True when light that goes to and fro between a dielectric coat and the base takes on
+        /// its colour each time, false when `diffuse` is the colour as seen through the coat.
+        nonlinear: bool,
+    },
+}
+
+/// A number that is the same everywhere, or read from a texture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NumberInput {
+    /// The same everywhere.
+    Constant(f64),
+    /// The texture's luminance times a factor.
+    Texture {
+        /// Index into the scene's textures.
+        texture: u16,
+        /// What it is multiplied by.
+        factor: f64,
+    },
+}
+
+impl From<f64> for NumberInput {
+    fn from(number: f64) -> Self {
+        Self::Constant(number)
+    }
 }
 
 /// A colour that is the same everywhere, or read from a texture.

@@ -1,6 +1,7 @@
 //! What paths may ask of the world: surfaces, materials, lights and the camera.
 
 mod accel;
+mod appearance;
 mod build;
 pub mod builtin;
 mod description;
@@ -43,7 +44,8 @@ use emitter::Emitters;
 pub use accel::{Anchor, Hit};
 pub use build::SceneError;
 pub use description::{
-    BsdfDescription, Coding, ColorInput, Material, Mesh, SceneDescription, Sphere, Texture,
+    BsdfDescription, Coding, ColorInput, Material, Mesh, NumberInput, SceneDescription, Sphere,
+    Texture,
 };
 pub use features::SceneFeatures;
 pub use strategies::{StrategySetting, Wish};

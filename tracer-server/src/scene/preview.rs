@@ -70,8 +70,12 @@ impl Scene {
     fn material_info(&self, surface: &super::SurfaceMaterial) -> MaterialInfo {
         let (model, color, transparent) = match &surface.bsdf {
             Bsdf::Lambert(m) => ("lambert", m.reflectance, false),
-            Bsdf::Mirror(m) => ("mirror", m.reflectance, false),
+            Bsdf::Mirror(m) => ("mirror", m.fresnel.at(1.0), false),
             Bsdf::Dielectric(m) => ("dielectric", m.transmittance, true),
+            Bsdf::RoughConductor(m) => ("rough conductor", m.fresnel.at(1.0), false),
+            Bsdf::RoughDielectric(m) => ("rough dielectric", m.facet.transmittance, true),
+            Bsdf::Plastic(m) => ("plastic", m.diffuse, false),
+            Bsdf::RoughPlastic(m) => ("rough plastic", m.diffuse, false),
         };
         let emission: Rgb = surface.emission * self.radiance_scale;
         MaterialInfo {

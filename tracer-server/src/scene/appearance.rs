@@ -1,0 +1,63 @@
+//! From the parameters of a material to the model that scatters.
+
+use super::SurfaceMaterial;
+use super::description::{BsdfDescription, Material, SceneDescription};
+use crate::bsdf::{
+    Bsdf, Dielectric, Fresnel, Ggx, Lambert, Mirror, Plastic, RoughConductor, RoughDielectric,
+    RoughPlastic, SMOOTH, deepened,
+};
+
+/// A rough boundary between media whose indices differ by less is smooth: it hardly turns light,
+/// and a facet could no longer be told from the two directions that it joins.
+const EQUAL_MEDIA: f64 = 1e-3;
+
+/// The material with emission in scene units.
+pub(super) fn surface(
+    description: &SceneDescription,
+    material: &Material,
+    emission_factor: f64,
+) -> SurfaceMaterial {
+    SurfaceMaterial {
+        name: material.name.clone(),
+        bsdf: model(description, material.bsdf),
+        emission: material.emission * emission_factor,
+    }
+}
+
+fn model(description: &SceneDescription, bsdf: BsdfDescription) -> Bsdf {
+    match bsdf {
+        BsdfDescription::Lambert { reflectance } => {
+            Bsdf::Lambert(Lambert { reflectance: description.mean_color(reflectance) })
+        }
+        BsdfDescription::Mirror { reflectance } => Bsdf::Mirror(Mirror::new(reflectance)),
+        BsdfDescription::Dielectric { eta, reflectance, transmittance } => {
+            Bsdf::Dielectric(Dielectric { eta, reflectance, transmittance })
+        }
+        BsdfDescription::RoughDielectric { eta, reflectance, transmittance, roughness } => {
+            let facet = Dielectric { eta, reflectance, transmittance };
+            let alpha = description.mean_number(roughness);
+            if alpha < SMOOTH || (eta - 1.0).abs() < EQUAL_MEDIA {
+                return Bsdf::Dielectric(facet);
+            }
+            Bsdf::RoughDielectric(RoughDielectric { facet, facets: Ggx::new(alpha) })
+        }
+        BsdfDescription::Conductor { fresnel, roughness } => {
+            let alpha = description.mean_number(roughness);
+            if alpha < SMOOTH {
+                return Bsdf::Mirror(Mirror { fresnel });
+            }
+            Bsdf::RoughConductor(RoughConductor { fresnel, facets: Ggx::new(alpha) })
+        }
+        BsdfDescription::Plastic { diffuse, fresnel, roughness, nonlinear } => {
+            let base = description.mean_color(diffuse);
+            let base = match fresnel {
+                Fresnel::Dielectric { eta, .. } if nonlinear => deepened(base, eta),
+                _ => base,
+            };
+            if roughness < SMOOTH {
+                return Bsdf::Plastic(Plastic::new(base, fresnel));
+            }
+            Bsdf::RoughPlastic(RoughPlastic::new(base, fresnel, Ggx::new(roughness)))
+        }
+    }
+}
