@@ -99,7 +99,8 @@ mod tests {
     /// dielectric.
     #[test]
     fn metals_and_glass_agree_where_they_meet() {
-        let normal = |eta: f64, k: f64| ((eta - 1.0).powi(2) + k * k) / ((eta + 1.0).powi(2) + k * k);
+        let normal =
+            |eta: f64, k: f64| ((eta - 1.0).powi(2) + k * k) / ((eta + 1.0).powi(2) + k * k);
         assert!((conductor(1.0, 0.1662, 3.15) - normal(0.1662, 3.15)).abs() < 1e-12, "at normal");
         for i in 0..=20 {
             let cosine = f64::from(i) / 20.0;
@@ -110,7 +111,7 @@ mod tests {
         assert_eq!(conductor(0.5, 0.0, 0.0), 1.0, "no index at all");
     }
 
-    /// The diffuse reflectance of a smooth dielectric has a closed form [Egan and Hilgeman 1973]:
+    /// The diffuse reflectance of a smooth dielectric has a closed form [Egan et al. 1973]:
     /// 0.0918 for an index of 1.5.
     #[test]
     fn means_are_those_of_the_literature() {

@@ -57,12 +57,6 @@ impl Ggx {
         b.z * (a.z + stretch) / (a.z * self.stretch(b) + b.z * stretch)
     }
 
-    /// Density of the facet normals that `w` sees: `G1(w) max(0, w . h) D(h) / cos_w`.
-    #[inline]
-    pub(super) fn visible_density(self, w: DVec3, h: DVec3) -> f64 {
-        2.0 * w.dot(h).max(0.0) * self.density(h) / (w.z + self.stretch(w))
-    }
-
     /// A facet normal that `w`, above the surface, sees [Heitz 2018; Dupuy and Benyoub 2023]:
     /// stretched to a hemisphere, the mirror images of `w` fill a spherical cap evenly.
     #[inline]

@@ -22,9 +22,8 @@ const RED: Rgb = Rgb::new(0.8, 0.2, 0.05);
 
 /// Every model with parameters that matter.
 fn models() -> Vec<(&'static str, Bsdf)> {
-    let metal = |fresnel, alpha| {
-        Bsdf::RoughConductor(RoughConductor { fresnel, facets: Ggx::new(alpha) })
-    };
+    let metal =
+        |fresnel, alpha| Bsdf::RoughConductor(RoughConductor { fresnel, facets: Ggx::new(alpha) });
     let glass = |eta, alpha| {
         let facet = Dielectric { eta, ..CLEAR };
         Bsdf::RoughDielectric(RoughDielectric { facet, facets: Ggx::new(alpha) })
@@ -197,15 +196,19 @@ fn energy_is_not_made() {
         assert!((0.0..=1.0).contains(&albedo), "{name}: {albedo}");
         for w in directions(64) {
             let sum = scattered(&bsdf, w);
-            // The evenness of the numbers limits what is known.
-            let limit = if matches!(bsdf, Bsdf::Plastic(_) | Bsdf::RoughPlastic(_)) { 2e-3 } else { 1e-9 };
+            // Where weights vary, the evenness of the numbers limits what is known.
+            let limit = match bsdf {
+                Bsdf::RoughPlastic(_) => 5e-3,
+                Bsdf::Plastic(_) => 1e-3,
+                _ => 1e-9,
+            };
             assert!(sum.max_channel() <= 1.0 + limit, "{name}: {sum:?} from {w}");
             let exact = match bsdf {
                 Bsdf::Lambert(m) => Some((m.reflectance, 1e-9)),
                 Bsdf::Mirror(m) => Some((m.fresnel.at(N.dot(w).abs()), 1e-9)),
                 Bsdf::Dielectric(_) => Some((Rgb::WHITE, 1e-9)),
                 Bsdf::Plastic(m) if m.diffuse == Rgb::WHITE => Some((Rgb::WHITE, 1e-3)),
-                Bsdf::RoughPlastic(m) if m.diffuse == Rgb::WHITE => Some((Rgb::WHITE, 1e-2)),
+                Bsdf::RoughPlastic(m) if m.diffuse == Rgb::WHITE => Some((Rgb::WHITE, 5e-3)),
                 _ => None,
             };
             if let Some((due, margin)) = exact {
@@ -221,9 +224,10 @@ const GRID: (usize, usize) = (20, 40);
 /// Cells of the grid, mirror reflection, smooth refraction, and what is absorbed.
 const CELLS: usize = GRID.0 * GRID.1 + 3;
 
-/// Samples fall as the density says, for walks from the eye and from the light: chi-square over a
-/// grid of the sphere, the probabilities of Dirac events and the share absorbed. The threshold is
-/// Holm's for the smallest p-value of all tests.
+/// Samples fall as the density says, for walks from the eye and from the light.
+///
+/// Chi-square over a grid of the sphere, the probabilities of Dirac events and the share absorbed.
+/// The threshold is Holm's for the smallest p-value of all tests.
 #[test]
 fn samples_follow_their_density() {
     const SAMPLES: usize = 100_000;
@@ -243,7 +247,7 @@ fn samples_follow_their_density() {
             for from_eye in [true, false] {
                 let expected = expected_counts(&bsdf, w, from_eye, SAMPLES);
                 // Only rounding and quadrature fall into cells that expect nothing.
-                let impossible = observed.iter().zip(&expected).any(|(o, e)| *o > 20 && *e < 1e-6);
+                let impossible = observed.iter().zip(&expected).any(|(o, e)| *o > 40 && *e < 1e-2);
                 assert!(!impossible, "{name} from {w}: samples without density");
                 if expected.iter().filter(|e| **e > 20.0).count() < 2 {
                     let whole = expected.iter().copied().fold(0.0, f64::max);
@@ -269,6 +273,9 @@ fn cell_of(w: DVec3) -> usize {
     row.min(rows - 1) * columns + ((turn * columns as f64) as usize).min(columns - 1)
 }
 
+/// How often a patch is split at most.
+const DEPTH: u32 = 5;
+
 /// A rectangle in (z, azimuth), whose area is its solid angle.
 #[derive(Clone, Copy)]
 struct Patch {
@@ -289,15 +296,16 @@ impl Patch {
         sum * (self.z.1 - self.z.0) * (self.azimuth.1 - self.azimuth.0) / (steps * steps) as f64
     }
 
-    /// Splits the patch in four until two estimates agree.
+    /// Splits the patch in four, at least once, until two estimates agree.
     fn integrate(self, depth: u32, density: &impl Fn(DVec3) -> f64) -> f64 {
         let (coarse, fine) = (self.estimate(4, density), self.estimate(7, density));
-        if depth == 0 || (coarse - fine).abs() < 1e-6 + 1e-4 * fine {
+        if depth == 0 || depth < DEPTH && (coarse - fine).abs() < 1e-6 + 1e-4 * fine {
             return fine;
         }
         let middle = |(low, high): (f64, f64)| 0.5 * (low + high);
         let halves = |range: (f64, f64)| [(range.0, middle(range)), (middle(range), range.1)];
-        let quarters = halves(self.z).into_iter().flat_map(|z| halves(self.azimuth).map(|a| (z, a)));
+        let quarters =
+            halves(self.z).into_iter().flat_map(|z| halves(self.azimuth).map(|a| (z, a)));
         quarters.map(|(z, azimuth)| Self { z, azimuth }.integrate(depth - 1, density)).sum()
     }
 }
@@ -319,8 +327,9 @@ fn expected_counts(bsdf: &Bsdf, w: DVec3, from_eye: bool, samples: usize) -> Vec
             let azimuth = |i: usize| (i as f64 / columns as f64 - 0.5) * std::f64::consts::TAU;
             let patch =
                 Patch { z: (z(row), z(row + 1)), azimuth: (azimuth(column), azimuth(column + 1)) };
-            let share = patch.integrate(5, &|onward| density(onward, event));
-            expected[row * columns + column] = share * samples as f64;
+            let share = patch.integrate(DEPTH, &|onward| density(onward, event));
+            // A density that only touches a corner may be missed.
+            expected[row * columns + column] = (share * samples as f64).max(1e-3);
         }
     }
     for (slot, event) in [(CELLS - 3, Event::Reflect), (CELLS - 2, Event::Transmit)] {

@@ -104,6 +104,44 @@ pub enum Bsdf {
     RoughPlastic(RoughPlastic),
 }
 
+impl Bsdf {
+    /// True when some of its events are Dirac ones.
+    pub fn has_dirac_lobe(&self) -> bool {
+        matches!(self, Self::Mirror(_) | Self::Dielectric(_) | Self::Plastic(_))
+    }
+
+    /// A word or two for tables.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Lambert(_) => "lambert",
+            Self::Mirror(_) => "mirror",
+            Self::Dielectric(_) => "dielectric",
+            Self::RoughConductor(_) => "rough conductor",
+            Self::RoughDielectric(_) => "rough dielectric",
+            Self::Plastic(_) => "plastic",
+            Self::RoughPlastic(_) => "rough plastic",
+        }
+    }
+
+    /// The colour by which people would know it.
+    pub fn preview_color(&self) -> Rgb {
+        match self {
+            Self::Lambert(m) => m.reflectance,
+            Self::Mirror(m) => m.fresnel.at(1.0),
+            Self::Dielectric(m) => m.transmittance,
+            Self::RoughConductor(m) => m.fresnel.at(1.0),
+            Self::RoughDielectric(m) => m.facet.transmittance,
+            Self::Plastic(m) => m.diffuse + m.fresnel.at(1.0),
+            Self::RoughPlastic(m) => m.diffuse + m.fresnel.at(1.0),
+        }
+    }
+
+    /// True when light passes through it.
+    pub fn is_transparent(&self) -> bool {
+        matches!(self, Self::Dielectric(_) | Self::RoughDielectric(_))
+    }
+}
+
 /// Calls a method of the model behind the variant: the only match on [`Bsdf`].
 macro_rules! model {
     ($bsdf:expr, $model:ident => $call:expr) => {

@@ -55,12 +55,13 @@ pub(super) fn untinted(fresnel: Fresnel) -> Fresnel {
     }
 }
 
-/// The colour that a base of the given albedo shows through a dielectric coat when every reflection
-/// from below the coat tints the light once more: `color (1 - R) / (1 - color R)` with the
-/// diffuse reflectance `R` of the coat from below.
+/// The colour that a base of the given albedo shows through a dielectric coat.
+///
+/// Every reflection from below the coat tints the light once more: `color (1 - R) / (1 - color R)`
+/// with the diffuse reflectance `R` of the coat from below.
 pub fn deepened(color: Rgb, eta: f64) -> Rgb {
     let outside = Fresnel::Dielectric { eta, tint: Rgb::WHITE }.mean().g;
-    // The same light passes a boundary both ways [Egan and Hilgeman 1973].
+    // The same light passes a boundary both ways [Egan et al. 1973].
     let inside = 1.0 - (1.0 - outside) / (eta * eta);
     let deepen = |c: f64| c * (1.0 - inside) / (1.0 - c * inside);
     Rgb::new(deepen(color.r), deepen(color.g), deepen(color.b))

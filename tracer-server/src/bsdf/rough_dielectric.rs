@@ -114,11 +114,8 @@ impl Scatter for RoughDielectric {
             return None;
         }
         let meeting = self.meet(n, w_l, w_e)?;
-        let scattering = if meeting.e.z > 0.0 {
-            self.reflection(&meeting)
-        } else {
-            self.refraction(&meeting)
-        };
+        let scattering =
+            if meeting.e.z > 0.0 { self.reflection(&meeting) } else { self.refraction(&meeting) };
         let lit = scattering.connection > 0.0 && !scattering.color.is_black();
         lit.then_some(scattering)
     }

@@ -55,15 +55,15 @@ impl CoatAlbedo {
     fn new(fresnel: &Fresnel, facets: Ggx) -> Self {
         let exact = |x: f64| directional_albedo(fresnel, facets, (x * x).max(1e-6));
         let position = |i: usize| i as f64 / (KNOTS - 1) as f64;
-        let mut albedo = Self {
-            knots: std::array::from_fn(|i| exact(position(i)) as f32),
-            mean: 0.0,
-        };
+        let mut albedo =
+            Self { knots: std::array::from_fn(|i| exact(position(i)) as f32), mean: 0.0 };
         // Between knots the table must not tell less than the truth, or energy would be made.
-        let middles = (0..KNOTS - 1).map(|i| (i as f64 + 0.5) / (KNOTS - 1) as f64);
-        let short = middles.map(|x| exact(x) - albedo.at(x * x)).fold(0.0, f64::max);
-        for knot in &mut albedo.knots {
-            *knot = (*knot + short as f32).min(1.0);
+        for i in 0..KNOTS - 1 {
+            let x = 0.5 * (position(i) + position(i + 1));
+            let short = (exact(x) - albedo.at(x * x)).max(0.0) as f32;
+            for knot in &mut albedo.knots[i..=i + 1] {
+                *knot = (*knot + short).min(1.0);
+            }
         }
         const STEPS: u32 = 2048;
         let cosine = |i| (1.0 - (f64::from(i) + 0.5) / f64::from(STEPS)).sqrt();
@@ -183,5 +183,29 @@ impl Scatter for RoughPlastic {
         let coat = self.fresnel.at(1.0);
         let passed = 1.0 - self.coat.at(1.0);
         (coat + self.diffuse * passed).max_channel().min(1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The table never tells less than the truth by more than a thousandth: that would be energy
+    /// from nowhere. At grazing angles its chords lie a little above.
+    #[test]
+    fn the_table_of_the_coat_is_on_the_safe_side() {
+        let coat = Fresnel::Dielectric { eta: 1.5, tint: Rgb::WHITE };
+        for alpha in [1e-3, 0.05, 0.3, 1.0] {
+            let facets = Ggx::new(alpha);
+            let table = CoatAlbedo::new(&coat, facets);
+            for i in 1..200 {
+                let cosine = f64::from(i) / 200.0;
+                let excess = table.at(cosine) - directional_albedo(&coat, facets, cosine);
+                assert!((-1e-3..3e-2).contains(&excess), "{alpha}, {cosine}: {excess}");
+            }
+        }
+        let smooth = Fresnel::mean(&coat).g;
+        let mean = CoatAlbedo::new(&coat, Ggx::new(1e-3)).mean;
+        assert!((mean - smooth).abs() < 0.02, "{mean} of {smooth}");
     }
 }

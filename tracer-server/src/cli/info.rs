@@ -82,13 +82,15 @@ fn print(out: &mut impl Write, inventory: &Inventory) -> io::Result<()> {
 }
 
 fn materials(rows: &[MaterialRow]) -> Table {
-    let mut table = table(&["material", "model", "colour", "index", "emission", "shapes"]);
+    let mut table =
+        table(&["material", "model", "colour", "index", "roughness", "emission", "shapes"]);
     for row in rows {
         table.add_row(vec![
             row.name.clone(),
             row.model.to_owned(),
             color(row.color),
             row.eta.map_or_else(String::new, short),
+            row.roughness.map_or_else(String::new, short),
             if row.emission.is_black() { String::new() } else { color(row.emission) },
             row.shapes.to_string(),
         ]);

@@ -6,8 +6,9 @@ use common::{CameraPose, Rgb};
 use glam::DVec3;
 use serde::Serialize;
 
+use crate::bsdf::{Bsdf, Fresnel};
 use crate::scene::load::Loaded;
-use crate::scene::{BsdfDescription, Mesh, Scene, SceneDescription};
+use crate::scene::{BsdfDescription, Material, Mesh, Scene, SceneDescription};
 
 /// Everything that is told about a scene; lengths in the units of its file.
 #[derive(Clone, Debug, Serialize)]
@@ -51,10 +52,12 @@ pub(crate) struct MaterialRow {
     pub(crate) name: String,
     /// Its scattering model.
     pub(crate) model: &'static str,
-    /// Its reflectance, or its transmittance for glass.
+    /// Its reflectance at normal incidence, or its transmittance for glass.
     pub(crate) color: Rgb,
     /// Its index of refraction, for glass.
     pub(crate) eta: Option<f64>,
+    /// Roughness of its facets (alpha of GGX), if it may be rough; the mean of a texture.
+    pub(crate) roughness: Option<f64>,
     /// The radiance it emits.
     pub(crate) emission: Rgb,
     /// Number of triangles and spheres of it.
@@ -100,7 +103,7 @@ impl Inventory {
             camera: description.camera,
             film: [description.width, description.height],
             max_edges: description.max_edges,
-            materials: material_rows(description, &usage),
+            materials: material_rows(description, scene, &usage),
             lights: light_rows(description, &usage),
             features: present,
             switched_off: features.switched_off(),
@@ -160,21 +163,37 @@ fn bounds(description: &SceneDescription) -> (DVec3, DVec3) {
     (low, high)
 }
 
-fn material_rows(description: &SceneDescription, usage: &[Usage]) -> Vec<MaterialRow> {
-    let row = |(material, usage): (&crate::scene::Material, &Usage)| {
-        let (model, color, eta) = match material.bsdf {
-            BsdfDescription::Lambert { reflectance } => {
-                ("lambert", description.mean_color(reflectance), None)
-            }
-            BsdfDescription::Mirror { reflectance } => ("mirror", reflectance, None),
-            BsdfDescription::Dielectric { eta, transmittance, .. } => {
-                ("dielectric", transmittance, Some(eta))
+fn material_rows(
+    description: &SceneDescription,
+    scene: &Scene,
+    usage: &[Usage],
+) -> Vec<MaterialRow> {
+    let models = scene.models();
+    let row = |((material, model), usage): ((&Material, &Bsdf), &Usage)| {
+        let (eta, roughness) = match material.bsdf {
+            BsdfDescription::Lambert { .. } | BsdfDescription::Mirror { .. } => (None, None),
+            BsdfDescription::Dielectric { eta, .. } => (Some(eta), None),
+            BsdfDescription::RoughDielectric { eta, roughness, .. } => (Some(eta), Some(roughness)),
+            BsdfDescription::Conductor { roughness, .. } => (None, Some(roughness)),
+            BsdfDescription::Plastic { fresnel, roughness, .. } => {
+                let eta = match fresnel {
+                    Fresnel::Dielectric { eta, .. } => Some(eta),
+                    _ => None,
+                };
+                (eta, Some(roughness.into()))
             }
         };
-        let (name, emission) = (material.name.clone(), material.emission);
-        MaterialRow { name, model, color, eta, emission, shapes: usage.shapes }
+        MaterialRow {
+            name: material.name.clone(),
+            model: model.name(),
+            color: model.preview_color(),
+            eta,
+            roughness: roughness.map(|input| description.mean_number(input)),
+            emission: material.emission,
+            shapes: usage.shapes,
+        }
     };
-    description.materials.iter().zip(usage).map(row).collect()
+    description.materials.iter().zip(models).zip(usage).map(row).collect()
 }
 
 fn light_rows(description: &SceneDescription, usage: &[Usage]) -> Vec<LightRow> {

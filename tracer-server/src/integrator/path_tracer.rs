@@ -3,7 +3,7 @@
 //! It shares scene, materials and rays with the rest, but neither paths nor their weights: a second
 //! opinion on every image.
 
-use common::{Event, Rgb};
+use common::Rgb;
 use glam::{DVec2, DVec3};
 
 use crate::bsdf::Scatter as _;
@@ -157,7 +157,8 @@ fn sample_light(scene: &Tracer<'_>, at: &Vertex, back: DVec3, u: [f64; 3]) -> Rg
     let to_light = span / distance_squared.sqrt();
     let cosine = -light.normal.dot(to_light);
     let bsdf = scene.bsdf(at.material);
-    let Some(s) = bsdf.evaluate(at.normal, to_light, back, Event::Diffuse) else {
+    let open = bsdf.connectable();
+    let Some(s) = open.and_then(|event| bsdf.evaluate(at.normal, to_light, back, event)) else {
         return Rgb::BLACK;
     };
     if !(cosine > 0.0) || !scene.visible(&light.anchor(), &at.anchor()) {

@@ -14,8 +14,8 @@ use super::{
 use crate::math::{Rng, Stream};
 use crate::path::{BidirectionalSampler, Draft, Failure, Path};
 use crate::scene::fixtures::{
-    Fixture, diffuse_room, floor_through_glass, saturated_room, slab_over_floor, specular_room,
-    wall_and_lamp_in_a_pane, wall_in_a_pane,
+    Fixture, coated_room, diffuse_room, floor_through_glass, saturated_room, slab_over_floor,
+    specular_room, wall_and_lamp_in_a_pane, wall_in_a_pane,
 };
 use crate::scene::{Scene, Tracer};
 use crate::verify::invariance::{Propose, Run, Test};
@@ -69,7 +69,9 @@ fn independent(scene: &Scene) -> Independent {
 
 #[test]
 fn bidirectional_leaves_the_target_alone() {
-    for (name, fixture) in [("diffuse", diffuse_room()), ("specular", specular_room())] {
+    let rooms =
+        [("diffuse", diffuse_room()), ("specular", specular_room()), ("coated", coated_room())];
+    for (name, fixture) in rooms {
         let scene = fixture.build();
         let mutation = Bidirectional { max_edges: scene.max_edges() };
         assert_lawful(&format!("bidirectional, {name}"), &scene, &strategy(&mutation));
@@ -92,6 +94,7 @@ fn lens_leaves_the_target_alone() {
         ("specular", specular_room()),
         ("glass", floor_through_glass()),
         ("pane", wall_in_a_pane()),
+        ("coated", coated_room()),
     ];
     for (name, fixture) in scenes {
         let scene = fixture.build();
@@ -102,8 +105,12 @@ fn lens_leaves_the_target_alone() {
 
 #[test]
 fn lens_subpath_leaves_the_target_alone() {
-    let scenes =
-        [("diffuse", diffuse_room()), ("specular", specular_room()), ("pane", wall_in_a_pane())];
+    let scenes = [
+        ("diffuse", diffuse_room()),
+        ("specular", specular_room()),
+        ("pane", wall_in_a_pane()),
+        ("coated", coated_room()),
+    ];
     for (name, fixture) in scenes {
         let scene = fixture.build();
         let mutation = LensSubpath { max_edges: scene.max_edges() };
@@ -117,6 +124,7 @@ fn caustic_leaves_the_target_alone() {
         ("diffuse", diffuse_room()),
         ("specular", specular_room()),
         ("slab", slab_over_floor(false)),
+        ("coated", coated_room()),
     ];
     for (name, fixture) in scenes {
         let scene = fixture.build();
@@ -203,6 +211,10 @@ fn wrong_lens_subpath_mutations_are_found() {
     for mutant in mutants::of_lens_subpath(LensSubpath { max_edges: scene.max_edges() }) {
         assert_found(&mutant, &scene, Test::Steps(3), 30_000);
     }
+    let scene = coated_room().build();
+    let right = LensSubpath { max_edges: scene.max_edges() };
+    let mutant = mutants::of_lens_subpath_on_coats(right);
+    assert_found(&mutant, &scene, Test::Steps(3), 60_000);
 }
 
 #[test]
@@ -246,6 +258,8 @@ fn proposals_are_reversible_and_their_caches_are_fresh() {
     check_moves(&scene, &LensSubpath { max_edges: scene.max_edges() });
     check_moves(&scene, &CausticPerturbation::new(scene.camera()));
     check_moves(&scene, &Primary::default());
+    let coated = coated_room().build();
+    check_moves(&coated, &LensSubpath { max_edges: coated.max_edges() });
     check_moves(&slab_over_floor(true).build(), &MultiChain::new(scene.camera()));
 }
 

@@ -1,13 +1,14 @@
 //! The lens subpath mutation: a fresh view ray, followed through mirrors and glass to the first
 //! diffuse surface, joined to the light side of the path [Veach and Guibas 1997, section 5.4].
 
-use glam::DVec2;
+use common::Event;
+use glam::{DVec2, DVec3};
 
 use super::{MixtureBasis, Mutation, Tuning};
 use crate::bsdf::Scatter as _;
 use crate::math::Rng;
 use crate::path::{
-    Draft, Failure, Path, Splice, camera_vertex, extend, open_for_connection, scatter,
+    Draft, Failure, Path, Splice, Vertex, camera_vertex, extend, open_for_connection, scatter,
 };
 use crate::scene::Tracer;
 
@@ -39,9 +40,34 @@ impl LensSubpath {
     }
 }
 
-impl Mutation for LensSubpath {
+/// A fresh lens subpath.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fresh {
     /// Index of the first diffuse vertex seen from the lens: the same before and after.
-    type Move = usize;
+    pub diffuse: usize,
+    /// Probability that the walk that made the new path stopped at that vertex: a coat might have
+    /// mirrored it instead.
+    pub stopped: f64,
+    /// The same for the old path.
+    pub stopped_before: f64,
+}
+
+/// Probability that a walk that arrives at `at` from `back` is not sent on by a Dirac event.
+fn stopping(scene: &Tracer<'_>, at: &Vertex, back: DVec3) -> f64 {
+    let bsdf = scene.bsdf(at.material);
+    if !bsdf.has_dirac_lobe() {
+        return 1.0;
+    }
+    let probability = |event: Event| {
+        let onward = bsdf.follow(at.normal, back, event)?;
+        Some(bsdf.evaluate(at.normal, onward, back, event)?.eye_pdf)
+    };
+    let sent_on = [Event::Reflect, Event::Transmit].into_iter().filter_map(probability);
+    1.0 - sent_on.sum::<f64>()
+}
+
+impl Mutation for LensSubpath {
+    type Move = Fresh;
     const NAME: &'static str = "lens subpath";
     const WEIGHT: f64 = 0.05;
 
@@ -61,7 +87,7 @@ impl Mutation for LensSubpath {
         rng: &mut Rng,
         draft: &mut Draft,
         y: &mut Path,
-    ) -> Result<usize, Failure> {
+    ) -> Result<Fresh, Failure> {
         let d = x.first_diffuse_from_eye();
         let film = Self::film_point(x.film(), draft, rng);
         draft.clear();
@@ -73,14 +99,22 @@ impl Mutation for LensSubpath {
             if d + draft.eye.len() + 1 > self.max_edges {
                 return Err(Failure::LengthOutOfRange);
             }
-            if scene.bsdf(at.material).connectable().is_some() {
-                open_for_connection(scene, &mut at)?;
-                draft.eye.push(at);
-                break;
+            let bsdf = scene.bsdf(at.material);
+            let stops = bsdf.connectable().is_some();
+            if !stops || bsdf.has_dirac_lobe() {
+                let onward = scatter(scene, &mut at, -direction, rng.array())?;
+                if at.event.is_specular() {
+                    draft.eye.push(at);
+                    direction = onward;
+                    continue;
+                }
             }
-            direction = scatter(scene, &mut at, -direction, rng.array())?;
+            open_for_connection(scene, &mut at)?;
             draft.eye.push(at);
+            break;
         }
+        let stopped = stopping(scene, &at, -direction);
+        let stopped_before = stopping(scene, &x.vertices()[d], x.edges()[d].direction);
         let splice = Splice {
             base: x,
             kept_light: d,
@@ -90,19 +124,19 @@ impl Mutation for LensSubpath {
             film: Some(film),
         };
         y.connect(scene, &splice)?;
-        Ok(d)
+        Ok(Fresh { diffuse: d, stopped, stopped_before })
     }
 
     /// The events are drawn anew, so their probabilities are divided out: `lum C_l`.
-    fn transition(&self, _: &Path, y: &Path, d: usize) -> f64 {
-        y.reciprocal(d)
+    fn transition(&self, _: &Path, y: &Path, via: Fresh) -> f64 {
+        y.reciprocal(via.diffuse) * via.stopped
     }
 
-    fn reverse(&self, d: usize) -> usize {
-        d
+    fn reverse(&self, via: Fresh) -> Fresh {
+        Fresh { stopped: via.stopped_before, stopped_before: via.stopped, ..via }
     }
 
-    fn kept(&self, _: &Path, d: usize) -> (usize, usize) {
-        (d, 1)
+    fn kept(&self, _: &Path, via: Fresh) -> (usize, usize) {
+        (via.diffuse, 1)
     }
 }

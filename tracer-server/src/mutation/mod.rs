@@ -30,7 +30,7 @@ pub use bidirectional::{Bidirectional, Ends};
 pub use caustic::{CausticPerturbation, Turn};
 pub use independent::Independent;
 pub use lens::LensPerturbation;
-pub use lens_subpath::LensSubpath;
+pub use lens_subpath::{Fresh, LensSubpath};
 pub use mixture::{Mixture, MixtureBasis};
 pub use multi_chain::MultiChain;
 pub use primary::Primary;

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::caustic::chain_pdf;
 use super::retrace::{displace, from_lens, walk_pdf};
 use super::{
-    Bidirectional, CausticPerturbation, Ends, Independent, LensPerturbation, LensSubpath,
+    Bidirectional, CausticPerturbation, Ends, Fresh, Independent, LensPerturbation, LensSubpath,
     MultiChain, Mutation, Primary, Proposal, Sizes, propose,
 };
 use crate::math::{Rng, TorusStep};
@@ -170,12 +170,21 @@ pub(super) fn of_lens_subpath<'a>(right: LensSubpath) -> Vec<Mutant<'a>> {
     }
     vec![
         mutant("lens subpath: event probabilities not divided out", move |args| {
-            misjudged(&right, args, |x, y, d| right.transition(x, y, d) / walk_pdf(y, d))
+            misjudged(&right, args, |x, y, via: Fresh| {
+                right.transition(x, y, via) / walk_pdf(y, via.diffuse)
+            })
         }),
         mutant("lens subpath: in solid angle at the lens", move |args| {
             misjudged(&right, args, |x, y, d| right.transition(x, y, d) * solid_angle_per_film(y))
         }),
     ]
+}
+
+/// Concerns surfaces that may mirror or scatter.
+pub(super) fn of_lens_subpath_on_coats<'a>(right: LensSubpath) -> Mutant<'a> {
+    mutant("lens subpath: the probability of stopping is missing", move |args| {
+        misjudged(&right, args, |_, y, via: Fresh| y.reciprocal(via.diffuse))
+    })
 }
 
 pub(super) fn of_caustic<'a>(right: CausticPerturbation) -> Vec<Mutant<'a>> {

@@ -1,7 +1,7 @@
 //! From the parameters of a material to the model that scatters.
 
 use super::SurfaceMaterial;
-use super::description::{BsdfDescription, Material, SceneDescription};
+use super::description::{BsdfDescription, Material, NumberInput, SceneDescription};
 use crate::bsdf::{
     Bsdf, Dielectric, Fresnel, Ggx, Lambert, Mirror, Plastic, RoughConductor, RoughDielectric,
     RoughPlastic, SMOOTH, deepened,
@@ -24,6 +24,12 @@ pub(super) fn surface(
     }
 }
 
+/// True below the limit; a texture is rough everywhere, so that the kind of an event does not
+/// depend on the place.
+fn is_smooth(roughness: NumberInput) -> bool {
+    matches!(roughness, NumberInput::Constant(alpha) if alpha < SMOOTH)
+}
+
 fn model(description: &SceneDescription, bsdf: BsdfDescription) -> Bsdf {
     match bsdf {
         BsdfDescription::Lambert { reflectance } => {
@@ -35,18 +41,18 @@ fn model(description: &SceneDescription, bsdf: BsdfDescription) -> Bsdf {
         }
         BsdfDescription::RoughDielectric { eta, reflectance, transmittance, roughness } => {
             let facet = Dielectric { eta, reflectance, transmittance };
-            let alpha = description.mean_number(roughness);
-            if alpha < SMOOTH || (eta - 1.0).abs() < EQUAL_MEDIA {
+            let facets = Ggx::new(description.mean_number(roughness));
+            if is_smooth(roughness) || (eta - 1.0).abs() < EQUAL_MEDIA {
                 return Bsdf::Dielectric(facet);
             }
-            Bsdf::RoughDielectric(RoughDielectric { facet, facets: Ggx::new(alpha) })
+            Bsdf::RoughDielectric(RoughDielectric { facet, facets })
         }
         BsdfDescription::Conductor { fresnel, roughness } => {
-            let alpha = description.mean_number(roughness);
-            if alpha < SMOOTH {
+            let facets = Ggx::new(description.mean_number(roughness));
+            if is_smooth(roughness) {
                 return Bsdf::Mirror(Mirror { fresnel });
             }
-            Bsdf::RoughConductor(RoughConductor { fresnel, facets: Ggx::new(alpha) })
+            Bsdf::RoughConductor(RoughConductor { fresnel, facets })
         }
         BsdfDescription::Plastic { diffuse, fresnel, roughness, nonlinear } => {
             let base = description.mean_color(diffuse);
@@ -54,7 +60,7 @@ fn model(description: &SceneDescription, bsdf: BsdfDescription) -> Bsdf {
                 Fresnel::Dielectric { eta, .. } if nonlinear => deepened(base, eta),
                 _ => base,
             };
-            if roughness < SMOOTH {
+            if is_smooth(roughness.into()) {
                 return Bsdf::Plastic(Plastic::new(base, fresnel));
             }
             Bsdf::RoughPlastic(RoughPlastic::new(base, fresnel, Ggx::new(roughness)))

@@ -5,11 +5,11 @@ use glam::DVec3;
 use thiserror::Error;
 
 use super::accel::{Accel, Anchor};
-use super::description::SceneDescription;
 use super::appearance::surface;
+use super::description::SceneDescription;
 use super::emitter::Emitters;
 use super::surface::{Ball, NO_PRIMITIVE, Triangle};
-use super::{MAX_EDGES, NO_EMITTER, Primitive, Scene, SceneFeatures, hash};
+use super::{MAX_EDGES, NO_EMITTER, Primitive, Scene, SceneFeatures, SurfaceMaterial, hash};
 
 /// Why a description makes no scene.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -70,6 +70,7 @@ impl Scene {
         if !materials.iter().any(|&m| emits(m)) {
             return Err(SceneError::NoLight);
         }
+        let spheres = balls.len();
         let mut accel = Accel::new(triangles, balls);
         let lifted = lifted_lights(&accel, |i| emits(materials[i]));
         if !lifted.is_empty() {
@@ -86,11 +87,16 @@ impl Scene {
             accel = Accel::new(triangles, accel.balls().to_vec());
         }
         let (emitters, primitives, radiance_scale) = light_up(description, &accel, &materials);
-        let surfaces = description
+        let surfaces: Vec<SurfaceMaterial> = description
             .materials
             .iter()
             .map(|m| surface(description, m, 1.0 / radiance_scale))
             .collect();
+        let mut used = materials.clone();
+        used.sort_unstable();
+        used.dedup();
+        let used: Vec<_> = used.into_iter().map(|m| &surfaces[usize::from(m)].bsdf).collect();
+        let features = SceneFeatures::of(&used, spheres);
         Ok(Self {
             name: description.name.clone(),
             hash: hash::digest(description),
@@ -98,7 +104,7 @@ impl Scene {
             camera,
             max_edges: description.max_edges,
             radiance_scale,
-            features: SceneFeatures::of(description),
+            features,
             accel,
             primitives,
             surfaces,

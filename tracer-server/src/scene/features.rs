@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::SceneDescription;
+use crate::bsdf::Bsdf;
 
 /// What the transport code may have to deal with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -14,20 +14,10 @@ pub struct SceneFeatures {
 }
 
 impl SceneFeatures {
-    /// Looks through a description for what its shapes use.
-    pub fn of(description: &SceneDescription) -> Self {
-        let is_specular = |material: u16| {
-            description
-                .materials
-                .get(usize::from(material))
-                .is_some_and(|m| m.bsdf.has_dirac_lobe())
-        };
-        let mut used = description
-            .meshes
-            .iter()
-            .flat_map(|mesh| mesh.materials.iter().copied())
-            .chain(description.spheres.iter().map(|sphere| sphere.material));
-        Self { specular: used.any(is_specular), spheres: !description.spheres.is_empty() }
+    /// Looks through what is traced: the models of all surfaces, by material, and the number of
+    /// analytic spheres.
+    pub(super) fn of(used: &[&Bsdf], spheres: usize) -> Self {
+        Self { specular: used.iter().any(|bsdf| bsdf.has_dirac_lobe()), spheres: spheres > 0 }
     }
 
     /// What the absent features switch off, in words, for the log and for people.

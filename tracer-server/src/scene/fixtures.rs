@@ -3,6 +3,8 @@
 use common::{CameraPose, Rgb};
 use glam::DVec3;
 
+use crate::bsdf::Fresnel;
+
 use super::{BsdfDescription, ColorInput, Material, Mesh, Scene, SceneDescription, Sphere};
 
 /// Builds descriptions shape by shape.
@@ -154,6 +156,41 @@ pub(crate) fn saturated_room() -> Fixture {
     Fixture::new(DVec3::new(0.1, 0.0, 0.95), DVec3::new(0.0, -0.1, -1.0), 70.0)
         .room(&[red, green, blue, WHITE, red, green], Rgb::BLACK)
         .quad(BLACK, Rgb::new(12.0, 9.0, 6.0), [-0.3, 0.9, -0.3], [0.6, 0., 0.], [0., 0., 0.5])
+}
+
+/// The same room with a smoothly coated floor and back wall, a roughly coated wall, and spheres of
+/// rough metal and of rough glass.
+pub(crate) fn coated_room() -> Fixture {
+    let coat = Fresnel::Dielectric { eta: 1.5, tint: Rgb::WHITE };
+    let paint = |r, g, b, roughness| BsdfDescription::Plastic {
+        diffuse: Rgb::new(r, g, b).into(),
+        fresnel: coat,
+        roughness,
+        nonlinear: false,
+    };
+    let lacquer = BsdfDescription::Plastic {
+        diffuse: Rgb::new(0.5, 0.4, 0.2).into(),
+        fresnel: Fresnel::Schlick(Rgb::grey(0.3)),
+        roughness: 0.0,
+        nonlinear: false,
+    };
+    let steel = BsdfDescription::Conductor {
+        fresnel: Fresnel::Schlick(Rgb::new(0.9, 0.7, 0.5)),
+        roughness: 0.3.into(),
+    };
+    let frosted = BsdfDescription::RoughDielectric {
+        eta: 1.5,
+        reflectance: Rgb::WHITE,
+        transmittance: Rgb::new(0.9, 1.0, 0.8),
+        roughness: 0.25.into(),
+    };
+    let walls =
+        [paint(0.7, 0.2, 0.1, 0.2), GREEN, lacquer, WHITE, paint(0.7, 0.7, 0.6, 0.0), WHITE];
+    Fixture::new(DVec3::new(0.1, 0.0, 0.95), DVec3::new(0.0, -0.1, -1.0), 70.0)
+        .room(&walls, Rgb::BLACK)
+        .quad(BLACK, Rgb::new(12.0, 9.0, 6.0), [-0.3, 0.9, -0.3], [0.6, 0., 0.], [0., 0., 0.5])
+        .sphere(frosted, Rgb::BLACK, [-0.45, -0.6, -0.1], 0.35)
+        .sphere(steel, Rgb::BLACK, [0.45, -0.55, -0.4], 0.4)
 }
 
 /// A high-contrast floor under a wide lamp, seen through a small glass ball before the camera.

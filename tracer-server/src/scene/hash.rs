@@ -120,7 +120,9 @@ impl Digest {
             }
             Fresnel::Conductor { eta, k, tint } => {
                 self.count(2);
-                [eta, k, tint].into_iter().for_each(|c| self.color(c));
+                self.color(eta);
+                self.color(k);
+                self.color(tint);
             }
             Fresnel::Dielectric { eta, tint } => {
                 self.count(3);

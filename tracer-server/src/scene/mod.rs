@@ -18,6 +18,7 @@ pub mod load;
 #[cfg(test)]
 mod malformed;
 mod material;
+mod material_check;
 mod mtl;
 mod mtl_text;
 mod obj;
@@ -181,6 +182,11 @@ impl Scene {
     #[inline]
     pub fn bsdf(&self, material: u16) -> &Bsdf {
         &self.surfaces[usize::from(material)].bsdf
+    }
+
+    /// The scattering models of all materials; a textured one with the mean of its texture.
+    pub fn models(&self) -> impl Iterator<Item = &Bsdf> {
+        self.surfaces.iter().map(|surface| &surface.bsdf)
     }
 
     /// What a primitive emits; `None` where it is no light.

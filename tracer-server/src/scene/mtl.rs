@@ -3,6 +3,7 @@
 use common::Rgb;
 
 use super::description::{BsdfDescription, Material};
+use crate::bsdf::Fresnel;
 
 /// The statements of one MTL material, as far as they matter here.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,10 +36,10 @@ pub(super) struct MtlEntry {
     pub(super) emission_map: Option<Result<Rgb, String>>,
 }
 
-/// Glossy lobes narrower than this roughness are nearer to a mirror than to matt paint.
-const MIRROR_ROUGHNESS: f64 = 0.1;
-/// What a surface reflects at most when lobes that are not modelled are added to its diffuse one.
-const MAX_ALBEDO: f64 = 0.95;
+/// A base darker than this share of the reflection above it is none.
+const DARK_BASE: f64 = 0.02;
+/// `Ks` this near to what a dielectric of index `Ni` reflects at normal incidence means just that.
+const COAT_MATCH: f64 = 0.01;
 /// A surface more transparent than this is taken for glass, otherwise for opaque.
 const GLASS_OPACITY: f64 = 0.5;
 /// A transmission filter darker than this is taken for the share absorbed.
@@ -103,9 +104,6 @@ impl MtlEntry {
                 GLASS
             }
         };
-        if self.roughness.is_some_and(|roughness| roughness > 0.0) {
-            notes.push("rough glass is not modelled; it becomes smooth".into());
-        }
         let filter = self.filter.unwrap_or(Rgb::WHITE);
         let transmittance = if filter.max_channel() < DARK_FILTER {
             let passing = Rgb::WHITE + filter * -1.0;
@@ -119,7 +117,15 @@ impl MtlEntry {
             within("Tf", filter, 1.0, notes)
         };
         // The Fresnel equations say how much a smooth boundary reflects; Ks does not enter.
-        BsdfDescription::Dielectric { eta, reflectance: Rgb::WHITE, transmittance }
+        match self.roughness {
+            Some(alpha) if alpha > 0.0 => BsdfDescription::RoughDielectric {
+                eta,
+                reflectance: Rgb::WHITE,
+                transmittance,
+                roughness: alpha.min(1.0).into(),
+            },
+            _ => BsdfDescription::Dielectric { eta, reflectance: Rgb::WHITE, transmittance },
+        }
     }
 
     fn opaque(&self, emission: Rgb, notes: &mut Vec<String>) -> BsdfDescription {
@@ -132,37 +138,52 @@ impl MtlEntry {
         let is_metal = self.metallic.is_some_and(|metallic| metallic >= 0.5);
         let lobe = if is_metal && specular.is_black() { diffuse } else { specular };
         if lobe.is_black() {
-            return BsdfDescription::Lambert {
-                reflectance: within("Kd", diffuse, 1.0, notes).into(),
-            };
+            let reflectance = within("Kd", diffuse, 1.0, notes).into();
+            return BsdfDescription::Lambert { reflectance };
         }
-        let dominant = is_metal || lobe.luminance() > diffuse.luminance();
-        let narrow = self.lobe_roughness() < MIRROR_ROUGHNESS;
-        if dominant && narrow {
-            if self.lobe_roughness() > 0.0 {
-                notes.push(format!(
-                    "glossy reflection (roughness {:.3}) is not modelled; it becomes a mirror",
-                    self.lobe_roughness()
-                ));
-            }
-            if !is_metal && !diffuse.is_black() {
-                let lost = show(diffuse);
-                notes.push(format!("a mirror has no diffuse part; Kd {lost} is left out"));
-            }
-            return BsdfDescription::Mirror { reflectance: within("Ks", lobe, 1.0, notes) };
+        let lobe = within("Ks", lobe, 1.0, notes);
+        let roughness = self.lobe_roughness();
+        // Illumination models 3 and 8 are mirrors without Fresnel's rise at grazing angles, and so
+        // are those of 5 that are nothing but mirrors.
+        let base_is_black = is_metal || diffuse.max_channel() < DARK_BASE * lobe.max_channel();
+        if base_is_black && !is_metal && !diffuse.is_black() {
+            let lost = show(diffuse);
+            notes.push(format!("Kd {lost} is lost beside such a reflection; left out"));
         }
-        let sum = if lobe == diffuse { diffuse } else { diffuse + specular };
-        let albedo = if sum.max_channel() > MAX_ALBEDO {
-            sum * (MAX_ALBEDO / sum.max_channel())
-        } else {
-            sum
+        let fresnel = match self.illumination {
+            Some(3 | 8) => Fresnel::Constant(lobe),
+            Some(5) if base_is_black => Fresnel::Constant(lobe),
+            _ => self.coat(lobe),
         };
-        notes.push(format!(
-            "glossy reflection (roughness {:.3}) is not modelled; it becomes diffuse with albedo {}",
-            self.lobe_roughness(),
-            show(albedo)
-        ));
-        BsdfDescription::Lambert { reflectance: albedo.into() }
+        match (base_is_black, fresnel) {
+            (true, Fresnel::Constant(reflectance)) if roughness == 0.0 => {
+                BsdfDescription::Mirror { reflectance }
+            }
+            (true, _) => {
+                let fresnel = if is_metal { Fresnel::Schlick(lobe) } else { fresnel };
+                BsdfDescription::Conductor { fresnel, roughness: roughness.into() }
+            }
+            (false, _) => BsdfDescription::Plastic {
+                diffuse: within("Kd", diffuse, 1.0, notes).into(),
+                fresnel,
+                roughness,
+                nonlinear: false,
+            },
+        }
+    }
+
+    /// What a coat reflects: a dielectric's by `Ni`, where `Ks` is what that reflects at normal
+    /// incidence, and otherwise Schlick's approximation from `Ks`.
+    fn coat(&self, specular: Rgb) -> Fresnel {
+        let dielectric = self.eta.filter(|&eta| {
+            let normal = ((eta - 1.0) / (eta + 1.0)).powi(2);
+            (specular + Rgb::grey(-normal)).max_channel().abs() < COAT_MATCH
+                && (Rgb::grey(normal) + specular * -1.0).max_channel().abs() < COAT_MATCH
+        });
+        match dielectric {
+            Some(eta) => Fresnel::Dielectric { eta, tint: Rgb::WHITE },
+            None => Fresnel::Schlick(specular),
+        }
     }
 
     /// `Kd` times the mean of its texture.
@@ -187,13 +208,13 @@ impl MtlEntry {
         }
     }
 
-    /// Roughness in the sense of a microfacet slope: 0 is a mirror, 1 is matt.
+    /// Roughness in the sense of a microfacet slope, alpha of GGX: 0 is a mirror, 1 is matt.
     fn lobe_roughness(&self) -> f64 {
         // Illumination models 3, 5 and 8 trace reflections: sharp ones, unless `Pr` says otherwise.
         match (self.roughness, self.illumination, self.shininess) {
-            (Some(roughness), ..) => roughness.max(0.0),
+            (Some(roughness), ..) => roughness.clamp(0.0, 1.0),
             (None, Some(3 | 5 | 8), _) => 0.0,
-            // The usual match of a Phong lobe with a Beckmann lobe of the same width.
+            // A Phong lobe of that exponent is as wide [Walter et al. 2007, section 5.2].
             (None, _, Some(exponent)) => (2.0 / (exponent.max(0.0) + 2.0)).sqrt(),
             (None, _, None) => 1.0,
         }
@@ -296,28 +317,57 @@ mod tests {
     }
 
     #[test]
-    fn glossy_materials_map_to_the_nearer_model_and_say_so() {
+    fn roughness_comes_from_pr_or_the_phong_exponent() {
         let metal = |roughness| MtlEntry {
             diffuse: Some(Rgb::grey(0.0)),
             specular: Some(Rgb::grey(0.9)),
             roughness: Some(roughness),
+            shininess: Some(10.0),
             metallic: Some(1.0),
             illumination: Some(2),
             ..MtlEntry::default()
         };
-        assert!(matches!(bsdf(&metal(0.05)), (BsdfDescription::Mirror { .. }, 1)), "nearly sharp");
-        assert!(matches!(bsdf(&metal(0.25)), (BsdfDescription::Lambert { .. }, 1)), "blurred");
+        let fresnel = Fresnel::Schlick(Rgb::grey(0.9));
+        let brushed = BsdfDescription::Conductor { fresnel, roughness: 0.25.into() };
+        assert_eq!(bsdf(&metal(0.25)), (brushed, 0));
         let phong = MtlEntry {
             diffuse: Some(Rgb::grey(0.5)),
             specular: Some(Rgb::grey(0.8)),
-            shininess: Some(40.0),
+            shininess: Some(198.0),
             illumination: Some(2),
             ..MtlEntry::default()
         };
-        let (material, notes) = phong.to_material();
-        let expected = BsdfDescription::Lambert { reflectance: Rgb::grey(0.95).into() };
-        assert_eq!(material.bsdf, expected, "the lobes' sum, kept below one");
-        assert!(notes[0].contains("glossy"), "{notes:?}");
+        let lacquer = BsdfDescription::Plastic {
+            diffuse: Rgb::grey(0.5).into(),
+            fresnel: Fresnel::Schlick(Rgb::grey(0.8)),
+            roughness: 0.1,
+            nonlinear: false,
+        };
+        assert_eq!(bsdf(&phong), (lacquer, 0));
+    }
+
+    #[test]
+    fn a_coat_of_known_index_is_a_dielectric() {
+        let wood = MtlEntry {
+            diffuse: Some(Rgb::grey(0.6)),
+            specular: Some(Rgb::grey(0.04)),
+            eta: Some(1.5),
+            roughness: Some(0.1),
+            illumination: Some(2),
+            ..MtlEntry::default()
+        };
+        let (BsdfDescription::Plastic { fresnel, .. }, 0) = bsdf(&wood) else {
+            panic!("a coat over a base");
+        };
+        assert_eq!(fresnel, Fresnel::Dielectric { eta: 1.5, tint: Rgb::WHITE });
+        let frosted = MtlEntry {
+            eta: Some(1.5),
+            roughness: Some(0.3),
+            illumination: Some(7),
+            ..MtlEntry::default()
+        };
+        let rough = matches!(bsdf(&frosted), (BsdfDescription::RoughDielectric { .. }, 0));
+        assert!(rough, "frosted glass");
     }
 
     #[test]

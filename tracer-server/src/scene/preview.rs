@@ -7,7 +7,6 @@ use glam::DVec3;
 
 use super::Scene;
 use super::surface::Ball;
-use crate::bsdf::Bsdf;
 
 /// A sphere is drawn with this many segments round its equator.
 const SEGMENTS: u32 = 48;
@@ -68,22 +67,13 @@ impl Scene {
     }
 
     fn material_info(&self, surface: &super::SurfaceMaterial) -> MaterialInfo {
-        let (model, color, transparent) = match &surface.bsdf {
-            Bsdf::Lambert(m) => ("lambert", m.reflectance, false),
-            Bsdf::Mirror(m) => ("mirror", m.fresnel.at(1.0), false),
-            Bsdf::Dielectric(m) => ("dielectric", m.transmittance, true),
-            Bsdf::RoughConductor(m) => ("rough conductor", m.fresnel.at(1.0), false),
-            Bsdf::RoughDielectric(m) => ("rough dielectric", m.facet.transmittance, true),
-            Bsdf::Plastic(m) => ("plastic", m.diffuse, false),
-            Bsdf::RoughPlastic(m) => ("rough plastic", m.diffuse, false),
-        };
         let emission: Rgb = surface.emission * self.radiance_scale;
         MaterialInfo {
             name: surface.name.clone(),
-            model: model.to_owned(),
-            color,
+            model: surface.bsdf.name().to_owned(),
+            color: surface.bsdf.preview_color(),
             emission,
-            transparent,
+            transparent: surface.bsdf.is_transparent(),
         }
     }
 }

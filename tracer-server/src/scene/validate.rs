@@ -1,12 +1,11 @@
 //! What every scene must fulfil, whatever file it came from; checked in this one place.
 
-use common::{Camera, Rgb};
+use common::Camera;
 use glam::DVec3;
 
 use super::MAX_EDGES;
-use super::description::{
-    BsdfDescription, ColorInput, Material, Mesh, SceneDescription, Sphere, Texture,
-};
+use super::description::{Mesh, SceneDescription, Sphere};
+use super::material_check::{check_material, check_texture};
 
 /// Coordinates beyond this are a mistake: squares and products of them stay far inside an `f64`,
 /// but nothing that a picture needs is lost in their rounding.
@@ -17,10 +16,6 @@ pub(super) const MAX_TRIANGLES: usize = 20_000_000;
 const MAX_FILM_SIDE: u32 = 16_384;
 /// The most pixels of a film.
 const MAX_FILM_PIXELS: u64 = 1 << 26;
-/// Radiance beyond this is a mistake, and its products could overflow.
-const MAX_RADIANCE: f64 = 1e15;
-/// Indices of refraction beyond this (or below its inverse) are a mistake.
-const MAX_ETA: f64 = 100.0;
 /// A triangle is degenerate when its doubled area is below this share of its longest side squared.
 const DEGENERATE: f64 = 1e-12;
 
@@ -96,7 +91,8 @@ pub(super) fn validate(scene: &mut SceneDescription) -> Result<Vec<Dropped>, Pro
     Ok(dropped)
 }
 
-type Fault = (&'static str, String);
+/// The field that is at fault, and a message.
+pub(super) type Fault = (&'static str, String);
 
 fn check_film(scene: &SceneDescription) -> Result<(), Problem> {
     let (width, height) = (scene.width, scene.height);
@@ -149,66 +145,6 @@ pub(super) fn check_point(point: DVec3) -> Result<(), String> {
         ));
     }
     Ok(())
-}
-
-/// The factor of a texture that exists, or the colour itself: what must be in [0, 1].
-fn factor_of(field: &'static str, input: ColorInput, textures: usize) -> Result<Rgb, Fault> {
-    match input {
-        ColorInput::Constant(color) => Ok(color),
-        ColorInput::Texture { texture, factor } if usize::from(texture) < textures => Ok(factor),
-        ColorInput::Texture { texture, .. } => {
-            Err((field, format!("texture {texture} does not exist; there are {textures}")))
-        }
-    }
-}
-
-fn check_texture(texture: &Texture) -> Result<(), Fault> {
-    let texels = u64::from(texture.width) * u64::from(texture.height);
-    if texels > 0 && texels == texture.texels.len() as u64 {
-        return Ok(());
-    }
-    let Texture { name, width, height, texels, .. } = texture;
-    let count = texels.len();
-    Err(("", format!("texture `{name}` of {width} x {height} texels has {count} of them")))
-}
-
-fn check_material(material: &Material, textures: usize) -> Result<(), Fault> {
-    let share = |field: &'static str, color: Rgb| {
-        let inside = color.is_physical() && color.max_channel() <= 1.0;
-        let message = || format!("{} must have all channels in [0, 1]", show(color));
-        if inside { Ok(()) } else { Err((field, message())) }
-    };
-    match material.bsdf {
-        BsdfDescription::Lambert { reflectance } => {
-            share("reflectance", factor_of("reflectance", reflectance, textures)?)?;
-        }
-        BsdfDescription::Mirror { reflectance } => share("reflectance", reflectance)?,
-        BsdfDescription::Dielectric { eta, reflectance, transmittance } => {
-            share("reflectance", reflectance)?;
-            share("transmittance", transmittance)?;
-            if !(1.0 / MAX_ETA..=MAX_ETA).contains(&eta) {
-                let message = format!(
-                    "{eta} is no index of refraction: it must lie between {} and {MAX_ETA} (glass \
-                     is 1.5)",
-                    1.0 / MAX_ETA
-                );
-                return Err(("eta", message));
-            }
-        }
-    }
-    let emission = material.emission;
-    if !(emission.is_physical() && emission.max_channel() <= MAX_RADIANCE) {
-        let message = format!(
-            "{} must have all channels finite, not negative, and at most {MAX_RADIANCE:e}",
-            show(emission)
-        );
-        return Err(("emission", message));
-    }
-    Ok(())
-}
-
-fn show(color: Rgb) -> String {
-    format!("({}, {}, {})", color.r, color.g, color.b)
 }
 
 fn check_mesh(mesh: &Mesh, materials: usize) -> Result<(), Fault> {
