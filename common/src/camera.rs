@@ -1,4 +1,4 @@
-//! The render camera: an ideal pinhole that both sides project with.
+//! The render camera: an ideal pinhole or a thin lens, that both sides project with.
 
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -37,13 +37,13 @@ pub enum CameraError {
     EmptyFilm(u32, u32),
 }
 
-/// A pinhole camera with its film.
+/// A camera with its film.
 ///
 /// Film coordinates are normalised to area one: `u` grows to the right and `v` downwards, both in
 /// [0, 1). The film plane lies at distance one from the pinhole.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
-    /// The pinhole.
+    /// The pinhole, or the middle of the lens.
     pub origin: DVec3,
     /// Unit vector to the right of the picture.
     pub right: DVec3,
@@ -59,6 +59,11 @@ pub struct Camera {
     pub width: u32,
     /// Film height in pixels.
     pub height: u32,
+    /// Radius of the lens; zero for a pinhole.
+    pub aperture: f64,
+    /// Distance along the view direction of the plane that is sharp; any positive number for a
+    /// pinhole.
+    pub focus: f64,
 }
 
 impl Camera {
@@ -85,7 +90,18 @@ impl Camera {
         let tan_y = (0.5 * pose.vertical_fov.to_radians()).tan();
         let tan_x = tan_y * f64::from(width) / f64::from(height);
         let up = right.cross(forward);
-        Ok(Self { origin: pose.origin, right, up, forward, tan_x, tan_y, width, height })
+        Ok(Self {
+            origin: pose.origin,
+            right,
+            up,
+            forward,
+            tan_x,
+            tan_y,
+            width,
+            height,
+            aperture: 0.0,
+            focus: 1.0,
+        })
     }
 
     /// Area of the film window in the plane at distance one.
@@ -96,6 +112,51 @@ impl Camera {
     /// The number of pixels.
     pub fn pixel_count(&self) -> usize {
         self.width as usize * self.height as usize
+    }
+
+    /// True when the lens has an area.
+    #[inline]
+    pub fn has_aperture(&self) -> bool {
+        self.aperture > 0.0
+    }
+
+    /// The point of the lens that two uniform numbers stand for, uniform over its area.
+    pub fn lens_point(&self, [u, v]: [f64; 2]) -> DVec3 {
+        let radius = self.aperture * u.sqrt();
+        let (sin, cos) = (std::f64::consts::TAU * v).sin_cos();
+        self.origin + radius * cos * self.right + radius * sin * self.up
+    }
+
+    /// The numbers from which [`Camera::lens_point`] makes a point of the lens.
+    pub fn invert_lens_point(&self, point: DVec3) -> [f64; 2] {
+        let offset = (point - self.origin) / self.aperture;
+        let (x, y) = (offset.dot(self.right), offset.dot(self.up));
+        let turn = y.atan2(x) / std::f64::consts::TAU;
+        let turn = if turn < 0.0 { turn + 1.0 } else { turn };
+        [x * x + y * y, turn].map(|u| u.clamp(0.0, 1.0 - 0.5 * f64::EPSILON))
+    }
+
+    /// Unit direction from a point of the lens through the film point `(u, v)`: the film point
+    /// stands for the point of the sharp plane that the middle of the lens sees through it.
+    #[inline]
+    pub fn direction_from(&self, lens: DVec3, film: DVec2) -> DVec3 {
+        let direction = self.direction(film);
+        if !self.has_aperture() {
+            return direction;
+        }
+        let sharp = direction * (self.focus / direction.dot(self.forward));
+        (self.origin + sharp - lens).normalize()
+    }
+
+    /// The film point seen from a point of the lens in `direction`, or `None` when it lies behind
+    /// or beside the film.
+    #[inline]
+    pub fn project_from(&self, lens: DVec3, direction: DVec3) -> Option<DVec2> {
+        let z = direction.dot(self.forward);
+        if !self.has_aperture() || !(z > 0.0) {
+            return self.project(direction);
+        }
+        self.project(lens - self.origin + direction * (self.focus / z))
     }
 
     /// Unit direction through the film point `(u, v)`.
@@ -120,7 +181,8 @@ impl Camera {
     }
 
     /// Density of film points over solid angle: `1 / (A_film cos^3)`, `cosine` measured from the
-    /// view direction. A film point drawn uniformly has this solid-angle density at the pinhole.
+    /// view direction. A film point drawn uniformly has this solid-angle density at the pinhole and
+    /// at every point of a thin lens.
     pub fn film_per_solid_angle(&self, cosine: f64) -> f64 {
         1.0 / (self.film_area() * cosine * cosine * cosine)
     }
@@ -155,6 +217,26 @@ mod tests {
             assert!((film - DVec2::new(u, v)).length() < 1e-12, "{film} is not ({u}, {v})");
         }
         assert_eq!(camera.project(-camera.forward), None, "behind the camera");
+    }
+
+    #[test]
+    fn a_lens_is_sharp_in_one_plane() {
+        let pinhole = camera();
+        let camera = Camera { aperture: 0.3, focus: 4.0, ..pinhole };
+        let film = DVec2::new(0.3, 0.8);
+        let sharp = pinhole.direction(film);
+        let sharp = pinhole.origin + sharp * (4.0 / sharp.dot(pinhole.forward));
+        for u in [[0.0, 0.0], [0.5, 0.3], [0.99, 0.9]] {
+            let lens = camera.lens_point(u);
+            let direction = camera.direction_from(lens, film);
+            let off = (sharp - lens).normalize().distance(direction);
+            assert!(off < 1e-12, "the ray from {lens} misses the sharp point");
+            let back = camera.project_from(lens, direction).expect("on the film");
+            assert!((back - film).length() < 1e-12, "{back} is not {film}");
+            let again = camera.invert_lens_point(lens);
+            let off = (again[0] - u[0]).abs().max((again[1] - u[1]).abs());
+            assert!(u[0] == 0.0 || off < 1e-12, "{again:?} is not {u:?}");
+        }
     }
 
     #[test]

@@ -69,6 +69,8 @@ impl From<Camera> for v1::Camera {
             tan_y: camera.tan_y,
             width: camera.width,
             height: camera.height,
+            aperture: camera.aperture,
+            focus: camera.focus,
         }
     }
 }
@@ -86,6 +88,11 @@ impl TryFrom<v1::Camera> for Camera {
             tan_y: check::positive("camera.tan_y", wire.tan_y)?,
             width: check::within("camera.width", wire.width, 1, check::MAX_FILM_SIDE)?,
             height: check::within("camera.height", wire.height, 1, check::MAX_FILM_SIDE)?,
+            aperture: check::not_negative("camera.aperture", wire.aperture)?,
+            focus: match wire.focus {
+                0.0 => 1.0,
+                focus => check::positive("camera.focus", focus)?,
+            },
         };
         let unit = |axis: DVec3| (axis.length_squared() - 1.0).abs() < AXIS_TOLERANCE;
         if !unit(camera.forward) {

@@ -74,6 +74,15 @@ pub(super) fn positive(field: &'static str, found: f64) -> Result<f64, WireError
     }
 }
 
+/// A finite number, zero included.
+pub(super) fn not_negative(field: &'static str, found: f64) -> Result<f64, WireError> {
+    if found.is_finite() && found >= 0.0 {
+        Ok(found)
+    } else {
+        Err(WireError::BadNumber { field, found, wanted: "finite, non-negative" })
+    }
+}
+
 /// A column of finite numbers.
 pub(super) fn all_finite(field: &'static str, values: &[f32]) -> Result<(), WireError> {
     match values.iter().find(|value| !value.is_finite()) {

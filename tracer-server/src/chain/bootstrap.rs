@@ -3,11 +3,9 @@
 //! Because both come from one pool, the image is unbiased however short the chains are
 //! [Veach 1997, section 11.3.1].
 
-use glam::DVec2;
-
 use crate::math::{Accumulator, Rng, Stream};
 use crate::parallel;
-use crate::path::{BidirectionalSampler, Path};
+use crate::path::{Aim, BidirectionalSampler, Path};
 use crate::scene::{Scene, Tracer};
 
 /// Samples that one worker draws in one go.
@@ -165,8 +163,8 @@ impl<'s> Replay<'s> {
 
     fn sample(&mut self, number: u64, visit: impl FnMut(&Path, f64)) {
         let mut rng = Rng::new(self.seed, Stream::Bootstrap, number);
-        let film = DVec2::new(rng.uniform(), rng.uniform());
-        self.sampler.sample(&self.scene, film, &mut rng, visit);
+        let aim = Aim::from_numbers(&self.scene, &mut rng);
+        self.sampler.sample(&self.scene, aim, &mut rng, visit);
     }
 
     fn weight(&mut self, number: u64, energy: &mut [f64]) -> f64 {

@@ -6,7 +6,7 @@ use crate::chain::LANES;
 use crate::film::Film;
 use crate::math::{Rng, Stream};
 use crate::parallel;
-use crate::path::BidirectionalSampler;
+use crate::path::{Aim, BidirectionalSampler};
 use crate::scene::{RayCounts, Scene, Tracer};
 
 /// Renders by bidirectional path tracing, pass by pass.
@@ -81,7 +81,8 @@ fn render_lane(scene: &Tracer<'_>, film: &mut Film, lane: usize, (seed, pass): (
                 (x as f64 + rng.uniform()) / width as f64,
                 (y as f64 + rng.uniform()) / height as f64,
             );
-            sampler.sample(scene, film_point, &mut rng, |path, weight| {
+            let aim = Aim::through(scene, film_point, || rng.array());
+            sampler.sample(scene, aim, &mut rng, |path, weight| {
                 let splat = path.unit_color() * weight;
                 if splat.is_physical() {
                     film.splat(path.pixel(), splat);

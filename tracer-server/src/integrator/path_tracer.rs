@@ -10,7 +10,7 @@ use crate::bsdf::Scatter as _;
 use crate::film::Film;
 use crate::math::{Rng, Stream};
 use crate::parallel;
-use crate::path::{Vertex, camera_vertex, extend, light_vertex, scatter};
+use crate::path::{Aim, Vertex, extend, light_vertex, scatter};
 use crate::scene::{RayCounts, Scene, Tracer};
 
 /// Edges that every path gets before Russian roulette begins.
@@ -91,21 +91,23 @@ fn sample_pixel(scene: &Tracer<'_>, x: usize, y: usize, rng: &mut Rng) -> Rgb {
         (x as f64 + rng.uniform()) / f64::from(camera.width),
         (y as f64 + rng.uniform()) / f64::from(camera.height),
     );
-    let radiance = radiance(scene, camera.direction(film), rng);
+    let aim = Aim::through(scene, film, || rng.array());
+    let radiance = radiance(scene, &aim, rng);
     if radiance.is_physical() { radiance } else { Rgb::BLACK }
 }
 
-/// Radiance from `direction` at the lens.
-fn radiance(scene: &Tracer<'_>, mut direction: DVec3, rng: &mut Rng) -> Rgb {
+/// Radiance that arrives at the lens by the ray `aim`.
+fn radiance(scene: &Tracer<'_>, aim: &Aim, rng: &mut Rng) -> Rgb {
+    let mut direction = aim.direction(scene);
     let mut sum = Rgb::BLACK;
     let mut throughput = Rgb::WHITE;
-    let mut at = camera_vertex(scene);
+    let mut at = aim.lens;
     // Density per solid angle of the last direction; infinite where no light sample could match it.
     let mut pdf = f64::INFINITY;
     for edges in 1..=scene.max_edges() {
         let Ok(mut next) = extend(scene, &at, direction) else { break };
         sum += throughput * hit_light(scene, &at, &next, direction, pdf);
-        if edges == scene.max_edges() {
+        if edges == scene.max_edges() || next.is_lamp() {
             break;
         }
         let bsdf = scene.bsdf(next.material);
@@ -130,41 +132,55 @@ fn radiance(scene: &Tracer<'_>, mut direction: DVec3, rng: &mut Rng) -> Rgb {
     sum
 }
 
-/// Emission of the surface that was hit, weighted against light sampling.
+/// Emission of what was hit, weighted against light sampling.
 fn hit_light(scene: &Tracer<'_>, from: &Vertex, hit: &Vertex, direction: DVec3, pdf: f64) -> Rgb {
+    let Some(emission) = scene.emission(hit.primitive, hit.material, -direction) else {
+        return Rgb::BLACK;
+    };
     let cosine = -hit.normal.dot(direction);
-    match scene.emission(hit.primitive) {
-        Some(emission) if cosine > 0.0 => {
-            let distance_squared = (hit.position - from.position).length_squared();
-            let light_pdf = emission.area_pdf * distance_squared / cosine;
-            let weight = if pdf.is_finite() { balance(pdf, light_pdf) } else { 1.0 };
-            emission.radiance * weight
-        }
-        _ => Rgb::BLACK,
+    if !(cosine > 0.0) {
+        return Rgb::BLACK;
     }
+    let light_pdf = if hit.is_lamp() {
+        emission.pdf
+    } else {
+        emission.pdf * (hit.position - from.position).length_squared() / cosine
+    };
+    let weight = if pdf.is_finite() { balance(pdf, light_pdf) } else { 1.0 };
+    emission.color * weight
 }
 
-/// Direct light from a sampled point, weighted against hitting it by scattering.
+/// Direct light from a sampled start, weighted against hitting it by scattering.
 fn sample_light(scene: &Tracer<'_>, at: &Vertex, back: DVec3, u: [f64; 3]) -> Rgb {
     let light = light_vertex(scene, u);
-    let Some(emission) = scene.emission(light.primitive) else { return Rgb::BLACK };
-    let span = light.position - at.position;
+    let far = light.is_lamp() && scene.is_infinite(light.material);
+    let from = if far { scene.far_from(at.position, -light.normal) } else { light.anchor() };
+    let span = from.position - at.position;
     let distance_squared = span.length_squared();
     let reach = scene.reach(light.primitive, at.primitive);
     if !(distance_squared > reach * reach) {
         return Rgb::BLACK;
     }
-    let to_light = span / distance_squared.sqrt();
-    let cosine = -light.normal.dot(to_light);
+    let to_light = if far { -light.normal } else { span / distance_squared.sqrt() };
+    let Some(emission) = scene.emission(light.primitive, light.material, -to_light) else {
+        return Rgb::BLACK;
+    };
+    // Solid angle at `at` for each unit of the measure of the start.
+    let solid_angle = match (far, light.is_lamp()) {
+        (true, _) => 1.0,
+        (false, true) => 1.0 / distance_squared,
+        (false, false) => -light.normal.dot(to_light) / distance_squared,
+    };
     let bsdf = scene.bsdf(at.material);
     let open = bsdf.connectable();
     let Some(s) = open.and_then(|event| bsdf.evaluate(at.normal, to_light, back, event)) else {
         return Rgb::BLACK;
     };
-    if !(cosine > 0.0) || !scene.visible(&light.anchor(), &at.anchor()) {
+    if !(solid_angle > 0.0) || !scene.visible(&from, &at.anchor()) {
         return Rgb::BLACK;
     }
-    let light_pdf = emission.area_pdf * distance_squared / cosine;
-    let value = s.connection * at.normal.dot(to_light).abs() / light_pdf;
-    s.color * emission.radiance * (value * balance(light_pdf, s.eye_pdf))
+    let light_pdf = emission.pdf / solid_angle;
+    let weight = if emission.hittable { balance(light_pdf, s.eye_pdf) } else { 1.0 };
+    let value = s.connection * emission.connection * at.normal.dot(to_light).abs() / light_pdf;
+    s.color * emission.color * (value * weight)
 }

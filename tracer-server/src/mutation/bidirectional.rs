@@ -11,6 +11,8 @@ use crate::scene::Tracer;
 pub struct Bidirectional {
     /// Longest path it may make, in edges.
     pub max_edges: usize,
+    /// The lens has an area: its point may be replaced too.
+    pub aperture: bool,
 }
 
 /// The kept ends of a move: `l` and `m` of the literature, with `l + 1` vertices kept.
@@ -58,26 +60,28 @@ fn addition_weight(difference: usize) -> f64 {
     }
 }
 
-/// Bit `j + 1` stands for vertex `j`, bit 0 for the virtual end "before the light".
-#[inline]
-fn end_mask(x: &Path) -> u128 {
-    x.connectable() << 1 | 1
-}
-
 /// The pairs of ends with `edges` edges between them: bit `p` is set when `l + 1 = p` is one.
+///
+/// In `mask` bit `j + 1` stands for vertex `j`, bit 0 for the virtual end "before the light", and
+/// the bit after the lens for "behind the lens".
 #[inline]
-fn ranges(mask: u128, edges: usize) -> u128 {
+fn ranges(mask: u128, edges: usize, lens: usize) -> u128 {
     let pairs = mask & mask >> edges;
-    // (before the light, light) deletes nothing.
-    if edges == 1 { pairs & !1 } else { pairs }
+    // (before the light, light) and (lens, behind the lens) delete nothing.
+    if edges == 1 { pairs & !(1 | 1 << (lens + 1)) } else { pairs }
 }
 
-/// `N_d`: the sum of deletion weights over all feasible ranges.
+/// True when `deleted` edges behind `kept_light` vertices reach behind the lens of a path of `edges`.
 #[inline]
-fn deletion_total(x: &Path) -> f64 {
-    let mask = end_mask(x);
-    let count = |edges: usize| f64::from(ranges(mask, edges).count_ones());
-    (1..=x.edge_count() + 1).map(|edges| deletion_weight(edges) * count(edges)).sum()
+fn replaces_lens(edges: usize, kept_light: usize, deleted: usize) -> bool {
+    kept_light + deleted == edges + 2
+}
+
+/// The ways to share the vertices of `added` edges between the two sides. A lens point is made from
+/// the eye side.
+#[inline]
+fn sharings(added: usize, replaces_lens: bool) -> usize {
+    added - usize::from(replaces_lens)
 }
 
 /// Position of the set bit number `rank` of `bits`, counted from the lowest.
@@ -90,6 +94,27 @@ fn nth_set_bit(mut bits: u128, rank: usize) -> usize {
 }
 
 impl Bidirectional {
+    /// Where a range may end; see [`ranges`].
+    #[inline]
+    fn end_mask(self, x: &Path) -> u128 {
+        let behind_lens = u128::from(self.aperture) << (x.edge_count() + 2);
+        x.connectable() << 1 | 1 | behind_lens
+    }
+
+    /// The most edges that can be deleted, virtual ones included.
+    #[inline]
+    fn most_deleted(self, x: &Path) -> usize {
+        x.edge_count() + 1 + usize::from(self.aperture)
+    }
+
+    /// `N_d`: the sum of deletion weights over all feasible ranges.
+    #[inline]
+    fn deletion_total(self, x: &Path) -> f64 {
+        let (mask, lens) = (self.end_mask(x), x.edge_count());
+        let count = |edges: usize| f64::from(ranges(mask, edges, lens).count_ones());
+        (1..=self.most_deleted(x)).map(|edges| deletion_weight(edges) * count(edges)).sum()
+    }
+
     /// The numbers of edges that may replace `deleted` edges of a path of `edges`.
     #[inline]
     fn admissible(
@@ -98,10 +123,11 @@ impl Bidirectional {
         kept_light: usize,
         deleted: usize,
     ) -> std::ops::RangeInclusive<usize> {
-        let rest = edges + 1 - deleted;
-        // `rest` counts one too many, since a path that is replaced whole has a virtual first edge.
-        let shortest = if kept_light == 0 || deleted == 1 { 2 } else { 1 };
-        shortest..=(self.max_edges + 1).saturating_sub(rest)
+        // A path that is replaced up to an end has a virtual edge there.
+        let virtual_ends =
+            usize::from(kept_light == 0) + usize::from(replaces_lens(edges, kept_light, deleted));
+        let shortest = if deleted == 1 { 2 } else { 1 + virtual_ends };
+        shortest..=(self.max_edges + deleted).saturating_sub(edges)
     }
 
     /// `N_a`: the sum of addition weights over the admissible numbers of edges.
@@ -115,18 +141,19 @@ impl Bidirectional {
     /// `p_d p_a1 p_a2`: the probability of choosing just these ends and one way to make them.
     pub(super) fn selection(self, x: &Path, via: Ends) -> f64 {
         let (deleted, added) = (via.deleted(), via.added());
-        let p_range = deletion_weight(deleted) / deletion_total(x);
+        let p_range = deletion_weight(deleted) / self.deletion_total(x);
         let p_length = addition_weight(added.abs_diff(deleted))
             / self.addition_total(x.edge_count(), via.kept_light, deleted);
-        p_range * p_length / added as f64
+        let replaces_lens = replaces_lens(x.edge_count(), via.kept_light, deleted);
+        p_range * p_length / sharings(added, replaces_lens) as f64
     }
 
-    fn choose_range(x: &Path, rng: &mut Rng) -> Option<(usize, usize)> {
-        let mask = end_mask(x);
-        let mut u = rng.uniform() * deletion_total(x);
+    fn choose_range(self, x: &Path, rng: &mut Rng) -> Option<(usize, usize)> {
+        let (mask, lens) = (self.end_mask(x), x.edge_count());
+        let mut u = rng.uniform() * self.deletion_total(x);
         let mut chosen = None;
-        for edges in 1..=x.edge_count() + 1 {
-            let pairs = ranges(mask, edges);
+        for edges in 1..=self.most_deleted(x) {
+            let pairs = ranges(mask, edges, lens);
             if pairs == 0 {
                 continue;
             }
@@ -164,7 +191,7 @@ impl Mutation for Bidirectional {
     const WEIGHT: f64 = 0.25;
 
     fn build(basis: &MixtureBasis<'_>, _tuning: &Tuning) -> Self {
-        Self { max_edges: basis.max_edges }
+        Self { max_edges: basis.max_edges, aperture: basis.camera.has_aperture() }
     }
 
     fn applicable(&self, _: &Path) -> bool {
@@ -179,10 +206,11 @@ impl Mutation for Bidirectional {
         draft: &mut Draft,
         y: &mut Path,
     ) -> Result<Ends, Failure> {
-        let (kept_light, from) = Self::choose_range(x, rng).ok_or(Failure::NoSubpath)?;
+        let (kept_light, from) = self.choose_range(x, rng).ok_or(Failure::NoSubpath)?;
         let added =
             self.choose_length(x, (kept_light, from), rng).ok_or(Failure::LengthOutOfRange)?;
-        let from_light = rng.below(added);
+        let replaces_lens = from > x.edge_count();
+        let from_light = rng.below(sharings(added, replaces_lens));
         let from_eye = added - 1 - from_light;
         let range = Range { kept_light, kept_from: from, from_light, from_eye };
         resample(scene, x, range, rng, draft, y)?;
@@ -192,7 +220,8 @@ impl Mutation for Bidirectional {
     /// The number of new vertices from the light side has no unique partner in the reverse move,
     /// so it is summed over; the ends have one.
     fn transition(&self, x: &Path, y: &Path, via: Ends) -> f64 {
-        self.selection(x, via) * y.reciprocal_sum(via.kept_light, via.to)
+        let last = via.to.min(y.edge_count());
+        self.selection(x, via) * y.reciprocal_sum(via.kept_light, last)
     }
 
     fn reverse(&self, via: Ends) -> Ends {
@@ -200,30 +229,29 @@ impl Mutation for Bidirectional {
     }
 
     fn kept(&self, x: &Path, via: Ends) -> (usize, usize) {
-        (via.kept_light, x.edge_count() + 1 - via.from)
+        (via.kept_light, (x.edge_count() + 1).saturating_sub(via.from))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use ::tests::chi_square_test;
-    use glam::DVec2;
 
     use super::*;
     use crate::math::Stream;
-    use crate::path::BidirectionalSampler;
+    use crate::path::{Aim, BidirectionalSampler};
     use crate::scene::fixtures::specular_room;
 
     /// The worked example: `L D E` with a pinhole, an area light and at most seven edges.
     #[test]
     fn selection_probabilities_of_a_short_path() {
         let mask = 0b1111_u128; // before the light, L, D, E
-        let count = |edges| ranges(mask, edges).count_ones();
+        let count = |edges| ranges(mask, edges, 2).count_ones();
         assert_eq!([count(1), count(2), count(3)], [2, 2, 1], "(0,1)(1,2) (-1,1)(0,2) (-1,2)");
         let total: f64 = (1..=3).map(|e| deletion_weight(e) * f64::from(count(e))).sum();
         assert!((total - 1.625).abs() < 1e-15, "N_d is {total}");
 
-        let b = Bidirectional { max_edges: 7 };
+        let b = Bidirectional { max_edges: 7, aperture: false };
         assert_eq!(b.admissible(2, 1, 2), 1..=7, "for (0,2)");
         assert!((b.addition_total(2, 1, 2) - 0.89375).abs() < 1e-15, "N_a of (0,2)");
         assert_eq!(b.admissible(2, 1, 1), 2..=6, "for (0,1)");
@@ -232,7 +260,7 @@ mod tests {
         assert!((b.addition_total(2, 0, 3) - 0.89375).abs() < 1e-15, "N_a of (-1,2)");
 
         let speculars = 0b1011_u128; // L S E
-        let count = |edges| ranges(speculars, edges).count_ones();
+        let count = |edges| ranges(speculars, edges, 2).count_ones();
         assert_eq!([count(1), count(2), count(3)], [0, 1, 1], "only (0,2) and (-1,2)");
     }
 
@@ -242,23 +270,25 @@ mod tests {
         const DRAWS: usize = 200_000;
         let scene = specular_room().build();
         let scene = Tracer::new(&scene);
-        let b = Bidirectional { max_edges: scene.max_edges() };
         let mut rng = Rng::new(1, Stream::Laboratory, 0);
-        for class in ["LDE", "LDSE", "LDDDE"] {
+        let classes = ["LDE", "LDSE", "LDDDE"].into_iter();
+        for (class, aperture) in classes.flat_map(|class| [(class, false), (class, true)]) {
+            let b = Bidirectional { max_edges: scene.max_edges(), aperture };
             let x = a_path(&scene, class);
             let (mut observed, mut expected) = (Vec::new(), Vec::new());
             let mut cells = Vec::new();
             let starts = |edges: usize| {
-                let pairs = ranges(end_mask(&x), edges);
+                let pairs = ranges(b.end_mask(&x), edges, x.edge_count());
                 (0..128).filter(move |p| pairs >> p & 1 == 1).map(move |p| (p, edges))
             };
-            for (kept_light, edges) in (1..=x.edge_count() + 1).flat_map(starts) {
+            for (kept_light, edges) in (1..=b.most_deleted(&x)).flat_map(starts) {
                 let from = kept_light + edges - 1;
                 for added in b.admissible(x.edge_count(), kept_light, edges) {
                     let to = kept_light + added - 1;
                     let via = Ends { kept_light, from, to, from_light: 0 };
                     // All ways to share the new vertices between the two sides.
-                    expected.push(b.selection(&x, via) * added as f64 * DRAWS as f64);
+                    let ways = sharings(added, from > x.edge_count()) as f64;
+                    expected.push(b.selection(&x, via) * ways * DRAWS as f64);
                     observed.push(0);
                     cells.push((kept_light, from, added));
                 }
@@ -266,7 +296,7 @@ mod tests {
             let total: f64 = expected.iter().sum();
             assert!((total / DRAWS as f64 - 1.0).abs() < 1e-12, "{class}: sums to {total}");
             for _ in 0..DRAWS {
-                let ends = Bidirectional::choose_range(&x, &mut rng).expect("a range");
+                let ends = b.choose_range(&x, &mut rng).expect("a range");
                 let added = b.choose_length(&x, ends, &mut rng).expect("a length");
                 let drawn = (ends.0, ends.1, added);
                 let cell = cells.iter().position(|&c| c == drawn).expect("a feasible choice");
@@ -283,8 +313,8 @@ mod tests {
         let mut sampler = BidirectionalSampler::new(scene);
         let mut found = None;
         while found.is_none() {
-            let film = DVec2::new(rng.uniform(), rng.uniform());
-            sampler.sample(scene, film, &mut rng, |path, _| {
+            let aim = Aim::from_numbers(scene, &mut rng);
+            sampler.sample(scene, aim, &mut rng, |path, _| {
                 if path.class() == class {
                     found = Some(path.clone());
                 }

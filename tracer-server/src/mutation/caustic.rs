@@ -60,6 +60,8 @@ fn chain_start(x: &Path) -> usize {
 /// vertex before the lens has drawn.
 pub(super) fn chain_pdf(x: &Path, start: usize) -> f64 {
     let drawn = |j: usize| match j {
+        // Directions of points and spots have a constant density, which cancels.
+        0 if x.vertices()[0].is_lamp() => 1.0,
         0 => x.vertices()[0].normal.dot(x.edges()[0].direction) * FRAC_1_PI,
         _ => x.scattering(j).light_pdf,
     };
@@ -85,7 +87,8 @@ impl Mutation for CausticPerturbation {
 
     fn applicable(&self, x: &Path) -> bool {
         let k = x.edge_count();
-        k >= 2 && x.is_connectable(k - 1)
+        // The direction of an infinite light is its start: there is nothing to turn.
+        k >= 2 && x.is_connectable(k - 1) && !(chain_start(x) == 0 && x.is_lit_from_afar())
     }
 
     fn propose(

@@ -11,12 +11,14 @@ use crate::scene::Tracer;
 pub struct Independent {
     /// Entry `k` is the probability of a path of `k` edges; entry 0 is zero.
     lengths: Vec<f64>,
+    /// The lens has an area, over which its point is drawn anew.
+    aperture: bool,
 }
 
 impl Independent {
     /// Lengths in proportion to `energy[k]`, the light that paths of `k` edges carry; each length
     /// from 1 on gets at least one per cent of its uniform share.
-    pub fn new(energy: &[f64], max_edges: usize) -> Self {
+    pub fn new(energy: &[f64], max_edges: usize, aperture: bool) -> Self {
         let total: f64 = energy.iter().skip(1).sum();
         let uniform = 1.0 / max_edges as f64;
         let share = |k: usize| {
@@ -27,7 +29,7 @@ impl Independent {
         let floored: Vec<f64> = (1..=max_edges).map(share).collect();
         let sum: f64 = floored.iter().sum();
         let lengths = std::iter::once(0.0).chain(floored.iter().map(|p| p / sum)).collect();
-        Self { lengths }
+        Self { lengths, aperture }
     }
 
     fn choose_length(&self, rng: &mut Rng) -> usize {
@@ -53,7 +55,7 @@ impl Mutation for Independent {
     const WEIGHT: f64 = 0.03;
 
     fn build(basis: &MixtureBasis<'_>, _tuning: &Tuning) -> Self {
-        Self::new(basis.energy, basis.max_edges)
+        Self::new(basis.energy, basis.max_edges, basis.camera.has_aperture())
     }
 
     fn applicable(&self, _: &Path) -> bool {
@@ -71,8 +73,10 @@ impl Mutation for Independent {
         let edges = self.choose_length(rng);
         // `k + 1` splits: 0 to k vertices on the light side.
         let from_light = rng.below(edges + 1);
-        let from_eye = edges - from_light;
-        let range = Range { kept_light: 0, kept_from: x.edge_count(), from_light, from_eye };
+        let lens = usize::from(self.aperture);
+        let from_eye = edges - from_light + lens;
+        let kept_from = x.edge_count() + lens;
+        let range = Range { kept_light: 0, kept_from, from_light, from_eye };
         resample(scene, x, range, rng, draft, y)
     }
 
@@ -84,7 +88,7 @@ impl Mutation for Independent {
     fn reverse(&self, (): ()) {}
 
     fn kept(&self, _: &Path, (): ()) -> (usize, usize) {
-        (0, 1)
+        (0, usize::from(!self.aperture))
     }
 }
 
@@ -95,7 +99,7 @@ mod tests {
 
     #[test]
     fn every_length_has_a_chance() {
-        let independent = Independent::new(&[0.0, 0.0, 1.0], 8);
+        let independent = Independent::new(&[0.0, 0.0, 1.0], 8, false);
         let mut rng = Rng::new(1, Stream::Laboratory, 0);
         let mut seen = [0_u32; 9];
         for _ in 0..100_000 {

@@ -4,18 +4,16 @@
 //! applying a strategy to them, rejections included, must leave the expectation of every function
 //! of the path as it was. No burn-in, no reference image and no convergence is involved.
 
-use glam::DVec2;
-
 use super::mutants::{self, Mutant};
 use super::{
     Bidirectional, CausticPerturbation, Independent, LensPerturbation, LensSubpath, MultiChain,
     Mutation, Primary, Proposal, Sizes, inspect, propose,
 };
 use crate::math::{Rng, Stream};
-use crate::path::{BidirectionalSampler, Draft, Failure, Path};
+use crate::path::{Aim, BidirectionalSampler, Draft, Failure, Path};
 use crate::scene::fixtures::{
-    Fixture, coated_room, diffuse_room, floor_through_glass, saturated_room, slab_over_floor,
-    specular_room, wall_and_lamp_in_a_pane, wall_in_a_pane,
+    Fixture, coated_room, diffuse_room, every_light, floor_through_glass, saturated_room,
+    slab_over_floor, specular_room, wall_and_lamp_in_a_pane, wall_in_a_pane,
 };
 use crate::scene::{Scene, Tracer};
 use crate::verify::invariance::{Propose, Run, Test};
@@ -54,9 +52,20 @@ fn strategy<M: Mutation>(
 }
 
 fn assert_lawful(name: &str, scene: &Scene, propose: &Propose<'_>) {
-    for (test, samples) in [(Test::Steps(3), 60_000), (Test::Proposals(5), 20_000)] {
+    assert_lawful_by(name, scene, propose, (20_000, 15));
+}
+
+/// With `samples` bidirectional samples for proposals, and three times as many for steps; at least
+/// `least` functions must be exercised.
+fn assert_lawful_by(
+    name: &str,
+    scene: &Scene,
+    propose: &Propose<'_>,
+    (samples, least): (u64, usize),
+) {
+    for (test, samples) in [(Test::Steps(3), 3 * samples), (Test::Proposals(5), samples)] {
         let findings = judged(name, scene, propose, test, samples);
-        assert!(findings[0].judged >= 15, "{findings:?}: too few functions were exercised");
+        assert!(findings[0].judged >= least, "{findings:?}: too few functions were exercised");
         for finding in findings {
             assert_ne!(finding.verdict, Verdict::Fail, "{test:?}: {finding:?}");
         }
@@ -64,7 +73,36 @@ fn assert_lawful(name: &str, scene: &Scene, propose: &Propose<'_>) {
 }
 
 fn independent(scene: &Scene) -> Independent {
-    Independent::new(&[0.0, 1.0, 4.0, 3.0, 2.0, 1.0, 1.0], scene.max_edges())
+    let aperture = scene.camera().has_aperture();
+    Independent::new(&[0.0, 1.0, 4.0, 3.0, 2.0, 1.0, 1.0], scene.max_edges(), aperture)
+}
+
+fn bidirectional(scene: &Scene) -> Bidirectional {
+    Bidirectional { max_edges: scene.max_edges(), aperture: scene.camera().has_aperture() }
+}
+
+fn lens_subpath(scene: &Scene) -> LensSubpath {
+    LensSubpath { max_edges: scene.max_edges(), aperture: scene.camera().has_aperture() }
+}
+
+/// Every strategy with every light and lens.
+#[test]
+fn every_light_and_lens_is_lawful() {
+    for (name, fixture) in every_light() {
+        let scene = fixture.build();
+        assert_lawful_here(name, &scene, &bidirectional(&scene));
+        assert_lawful_here(name, &scene, &independent(&scene));
+        assert_lawful_here(name, &scene, &LensPerturbation::new(scene.camera()));
+        assert_lawful_here(name, &scene, &lens_subpath(&scene));
+        assert_lawful_here(name, &scene, &CausticPerturbation::new(scene.camera()));
+        let aperture = scene.camera().has_aperture();
+        assert_lawful_here(name, &scene, &Primary { aperture, ..Primary::default() });
+    }
+}
+
+fn assert_lawful_here<M: Mutation>(name: &str, scene: &Scene, mutation: &M) {
+    assert_lawful_by(&format!("{}, {name}", M::NAME), scene, &strategy(mutation), (6_000, 5));
+    check_moves(scene, mutation);
 }
 
 #[test]
@@ -73,7 +111,7 @@ fn bidirectional_leaves_the_target_alone() {
         [("diffuse", diffuse_room()), ("specular", specular_room()), ("coated", coated_room())];
     for (name, fixture) in rooms {
         let scene = fixture.build();
-        let mutation = Bidirectional { max_edges: scene.max_edges() };
+        let mutation = bidirectional(&scene);
         assert_lawful(&format!("bidirectional, {name}"), &scene, &strategy(&mutation));
     }
 }
@@ -113,7 +151,7 @@ fn lens_subpath_leaves_the_target_alone() {
     ];
     for (name, fixture) in scenes {
         let scene = fixture.build();
-        let mutation = LensSubpath { max_edges: scene.max_edges() };
+        let mutation = lens_subpath(&scene);
         assert_lawful(&format!("lens subpath, {name}"), &scene, &strategy(&mutation));
     }
 }
@@ -178,7 +216,7 @@ fn assert_found(mutant: &Mutant<'_>, scene: &Scene, test: Test, samples: u64) {
 #[test]
 fn wrong_bidirectional_mutations_are_found() {
     let scene = saturated_room().build();
-    let right = Bidirectional { max_edges: scene.max_edges() };
+    let right = bidirectional(&scene);
     for mutant in mutants::of_bidirectional(right) {
         assert_found(&mutant, &scene, Test::Steps(3), 30_000);
     }
@@ -208,11 +246,11 @@ fn wrong_lens_perturbations_are_found() {
 #[test]
 fn wrong_lens_subpath_mutations_are_found() {
     let scene = wall_in_a_pane().build();
-    for mutant in mutants::of_lens_subpath(LensSubpath { max_edges: scene.max_edges() }) {
+    for mutant in mutants::of_lens_subpath(lens_subpath(&scene)) {
         assert_found(&mutant, &scene, Test::Steps(3), 30_000);
     }
     let scene = coated_room().build();
-    let right = LensSubpath { max_edges: scene.max_edges() };
+    let right = lens_subpath(&scene);
     let mutant = mutants::of_lens_subpath_on_coats(right);
     assert_found(&mutant, &scene, Test::Steps(3), 60_000);
 }
@@ -250,16 +288,16 @@ fn wrong_primary_mutations_are_found() {
 #[test]
 fn proposals_are_reversible_and_their_caches_are_fresh() {
     let scene = specular_room().build();
-    let b = Bidirectional { max_edges: scene.max_edges() };
+    let b = bidirectional(&scene);
     let (i, l) = (independent(&scene), LensPerturbation::new(scene.camera()));
     check_moves(&scene, &b);
     check_moves(&scene, &i);
     check_moves(&scene, &l);
-    check_moves(&scene, &LensSubpath { max_edges: scene.max_edges() });
+    check_moves(&scene, &lens_subpath(&scene));
     check_moves(&scene, &CausticPerturbation::new(scene.camera()));
     check_moves(&scene, &Primary::default());
     let coated = coated_room().build();
-    check_moves(&coated, &LensSubpath { max_edges: coated.max_edges() });
+    check_moves(&coated, &lens_subpath(&coated));
     check_moves(&slab_over_floor(true).build(), &MultiChain::new(scene.camera()));
 }
 
@@ -270,9 +308,9 @@ fn check_moves<M: Mutation>(scene: &Scene, mutation: &M) {
     let mut rng = Rng::new(3, Stream::Laboratory, 0);
     let mut checked = 0;
     for _ in 0..3000 {
-        let film = DVec2::new(rng.uniform(), rng.uniform());
+        let aim = Aim::from_numbers(&scene, &mut rng);
         x.clone_from(&Path::default());
-        sampler.sample(&scene, film, &mut rng, |path, _| x.clone_from(path));
+        sampler.sample(&scene, aim, &mut rng, |path, _| x.clone_from(path));
         if x.vertices().is_empty() || !mutation.applicable(&x) {
             continue;
         }

@@ -8,7 +8,7 @@ use super::{MixtureBasis, Mutation, Tuning};
 use crate::bsdf::Scatter as _;
 use crate::math::Rng;
 use crate::path::{
-    Draft, Failure, Path, Splice, Vertex, camera_vertex, extend, open_for_connection, scatter,
+    Aim, Draft, Failure, Path, Splice, Vertex, extend, open_for_connection, scatter,
 };
 use crate::scene::Tracer;
 
@@ -17,6 +17,8 @@ use crate::scene::Tracer;
 pub struct LensSubpath {
     /// Longest path it may make, in edges.
     pub max_edges: usize,
+    /// The lens has an area, over which its point is drawn anew.
+    pub aperture: bool,
 }
 
 /// The displacement number `n` of an evenly spread sequence on the unit square: multiples of the
@@ -72,7 +74,7 @@ impl Mutation for LensSubpath {
     const WEIGHT: f64 = 0.05;
 
     fn build(basis: &MixtureBasis<'_>, _tuning: &Tuning) -> Self {
-        Self { max_edges: basis.max_edges }
+        Self { max_edges: basis.max_edges, aperture: basis.camera.has_aperture() }
     }
 
     fn applicable(&self, x: &Path) -> bool {
@@ -91,13 +93,22 @@ impl Mutation for LensSubpath {
         let d = x.first_diffuse_from_eye();
         let film = Self::film_point(x.film(), draft, rng);
         draft.clear();
-        let mut direction = scene.camera().direction(film);
-        let mut at = camera_vertex(scene);
-        loop {
+        let aim = if self.aperture {
+            let aim = Aim::through(scene, film, || rng.array());
+            draft.eye.push(aim.lens);
+            aim
+        } else {
+            Aim { film, lens: x.vertices()[x.edge_count()] }
+        };
+        let (mut at, mut direction) = (aim.lens, aim.direction(scene));
+        for edges in d + 1.. {
             at = extend(scene, &at, direction)?;
-            // `d` edges up to this vertex, one for each vertex of the walk.
-            if d + draft.eye.len() + 1 > self.max_edges {
+            // `d` edges up to the first vertex, and one for each vertex of the walk.
+            if edges > self.max_edges {
                 return Err(Failure::LengthOutOfRange);
+            }
+            if at.is_lamp() {
+                return Err(Failure::LeftScene);
             }
             let bsdf = scene.bsdf(at.material);
             let stops = bsdf.connectable().is_some();
@@ -120,7 +131,7 @@ impl Mutation for LensSubpath {
             kept_light: d,
             light: &[],
             eye: &draft.eye,
-            kept_from: x.edge_count(),
+            kept_from: x.edge_count() + usize::from(self.aperture),
             film: Some(film),
         };
         y.connect(scene, &splice)?;
@@ -137,6 +148,6 @@ impl Mutation for LensSubpath {
     }
 
     fn kept(&self, _: &Path, via: Fresh) -> (usize, usize) {
-        (via.diffuse, 1)
+        (via.diffuse, usize::from(!self.aperture))
     }
 }

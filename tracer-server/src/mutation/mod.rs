@@ -103,6 +103,14 @@ pub struct Proposal {
     pub kept_eye: usize,
 }
 
+/// Vertices that `x` and the proposal share, from the light end and from the lens end, as they are
+/// drawn: a light infinitely far away moves with the vertex that it shines on.
+#[inline]
+fn shared<M: Mutation>(mutation: &M, x: &Path, via: M::Move) -> (usize, usize) {
+    let (light, eye) = mutation.kept(x, via);
+    (if light == 1 && x.is_lit_from_afar() { 0 } else { light }, eye)
+}
+
 /// Proposes by `mutation` and evaluates both directions.
 #[inline]
 pub fn propose<M: Mutation>(
@@ -116,7 +124,7 @@ pub fn propose<M: Mutation>(
     let via = mutation.propose(scene, x, rng, draft, y)?;
     let backward = mutation.transition(y, x, mutation.reverse(via));
     let forward = mutation.transition(x, y, via);
-    let (kept_light, kept_eye) = mutation.kept(x, via);
+    let (kept_light, kept_eye) = shared(mutation, x, via);
     Ok(Proposal { ratio: backward / forward, kept_light, kept_eye })
 }
 
@@ -156,14 +164,14 @@ pub fn inspect<M: Mutation>(
     let forth = mutation.transition(y, x, reverse) / mutation.transition(x, y, via);
     let again = mutation.reverse(reverse);
     let back = mutation.transition(x, y, again) / mutation.transition(y, x, reverse);
-    let (light, eye) = mutation.kept(x, via);
+    let (light, eye) = shared(mutation, x, via);
     let (xv, yv) = (x.vertices(), y.vertices());
-    let shared = |from_x: Option<usize>, from_y: Option<usize>| match (from_x, from_y) {
+    let same = |from_x: Option<usize>, from_y: Option<usize>| match (from_x, from_y) {
         (Some(a), Some(b)) => xv.get(a..) == yv.get(b..),
         _ => false,
     };
     let ends = (xv.len().checked_sub(eye), yv.len().checked_sub(eye));
-    let keeps = light <= xv.len() && xv.get(..light) == yv.get(..light) && shared(ends.0, ends.1);
+    let keeps = light <= xv.len() && xv.get(..light) == yv.get(..light) && same(ends.0, ends.1);
     let flaw = match (keeps, y.is_fresh(scene)) {
         (false, _) => Some(Flaw::NotKept),
         (true, false) => Some(Flaw::Stale),

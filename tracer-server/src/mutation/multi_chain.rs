@@ -71,7 +71,8 @@ impl Mutation for MultiChain {
     /// There must be at least two chains.
     fn applicable(&self, x: &Path) -> bool {
         let d = x.first_diffuse_from_eye();
-        d >= 1 && !x.is_connectable(d - 1)
+        // A chain that ends on a light must be able to hit it.
+        d >= 1 && !x.is_connectable(d - 1) && (last_chain_end(x) > 0 || x.reciprocal(0) > 0.0)
     }
 
     fn propose(

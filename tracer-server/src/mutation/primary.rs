@@ -16,11 +16,13 @@ pub struct Primary {
     pub step: TorusStep,
     /// Probability of replacing all numbers by fresh ones.
     pub fresh: f64,
+    /// The lens has an area, and its point has numbers too.
+    pub aperture: bool,
 }
 
 impl Default for Primary {
     fn default() -> Self {
-        Self { step: TorusStep::default(), fresh: 0.1 }
+        Self { step: TorusStep::default(), fresh: 0.1, aperture: false }
     }
 }
 
@@ -69,7 +71,9 @@ impl Primary {
         y: &mut Path,
     ) -> Result<(), Failure> {
         let k = x.edge_count();
-        let range = Range { kept_light: 0, kept_from: k, from_light: light, from_eye: k - light };
+        let lens = usize::from(self.aperture);
+        let (kept_from, from_eye) = (k + lens, k - light + lens);
+        let range = Range { kept_light: 0, kept_from, from_light: light, from_eye };
         let step = (rng.uniform() >= self.fresh).then_some(self.step);
         resample(scene, x, range, &mut Moved { tape, step, rng }, draft, y)
     }
@@ -97,12 +101,13 @@ impl Mutation for Primary {
         },
     ];
 
-    fn build(_: &MixtureBasis<'_>, tuning: &Tuning) -> Self {
+    fn build(basis: &MixtureBasis<'_>, tuning: &Tuning) -> Self {
         let usual = Self::default();
         let step = tuning.sizes("step").map(|sizes| TorusStep::new(sizes.min, sizes.max));
         Self {
             step: step.unwrap_or(usual.step),
             fresh: tuning.number("fresh").unwrap_or(usual.fresh),
+            aperture: basis.camera.has_aperture(),
         }
     }
 
@@ -136,6 +141,6 @@ impl Mutation for Primary {
     }
 
     fn kept(&self, _: &Path, _: usize) -> (usize, usize) {
-        (0, 1)
+        (0, usize::from(!self.aperture))
     }
 }

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use crate::bsdf::Scatter as _;
 use crate::math::{Frame, Rng, log_uniform};
 use crate::path::{
-    Draft, Failure, Path, Splice, Vertex, camera_vertex, end_on_light, extend, open_for_connection,
+    Draft, Failure, Path, Splice, Vertex, end_on_light, extend, open_for_connection,
 };
 use crate::scene::Tracer;
 
@@ -65,6 +65,9 @@ pub(super) fn repeat(
     direction: DVec3,
     old: &Vertex,
 ) -> Result<DVec3, Failure> {
+    if at.is_lamp() {
+        return Err(Failure::LeftScene);
+    }
     let bsdf = scene.bsdf(at.material);
     let onward = bsdf.follow(at.normal, -direction, old.event).ok_or(Failure::KindChanged)?;
     at.set_event(old.event);
@@ -88,8 +91,8 @@ pub(super) fn from_lens(
         return Err(Failure::OffFilm);
     }
     draft.clear();
-    let mut direction = scene.camera().direction(film);
-    let mut at = camera_vertex(scene);
+    let mut at = x.vertices()[x.edge_count()];
+    let mut direction = scene.camera().direction_from(at.position, film);
     for j in (end..x.edge_count()).rev() {
         at = extend(scene, &at, direction)?;
         let old = &x.vertices()[j];

@@ -1,13 +1,11 @@
 //! From vertices to a path: splicing, and the computation of every cached value.
 
-use std::f64::consts::PI;
-
 use common::{Rgb, VertexKind};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
-use super::{Edge, Failure, NO_SCATTERING, Path, Vertex, camera_vertex};
+use super::{Edge, Failure, NO_SCATTERING, Path, Vertex, lens_vertex};
 use crate::bsdf::Scatter as _;
-use crate::scene::Tracer;
+use crate::scene::{Emission, Tracer};
 
 /// How a path is made of an older one: its ends are kept, what lies between is replaced.
 #[derive(Clone, Copy, Debug)]
@@ -21,17 +19,24 @@ pub struct Splice<'a> {
     /// New vertices on the eye side, in the order of a walk from the eye: the last one comes first
     /// in the path.
     pub eye: &'a [Vertex],
-    /// The first vertex kept at the eye end, as an index into `base`.
+    /// The first vertex kept at the eye end, as an index into `base`; one past its end when the lens
+    /// itself is the first of `eye`.
     pub kept_from: usize,
     /// The film point, where a walk from the lens has drawn one.
     pub film: Option<DVec2>,
 }
 
 impl Path {
-    /// Only the lens: the base for paths that are new from end to end.
+    /// Only a lens, in its middle: the base for paths that are new from end to end.
     pub fn at_lens(scene: &Tracer<'_>) -> Self {
+        // The centre of the disk.
+        Self::from_lens(lens_vertex(scene, || [0.0; 2]))
+    }
+
+    /// Only the vertex `lens`: the base for paths that end there and are new otherwise.
+    pub fn from_lens(lens: Vertex) -> Self {
         let mut path = Self::default();
-        path.vertices.push(camera_vertex(scene));
+        path.vertices.push(lens);
         path.scattering.push(NO_SCATTERING);
         path
     }
@@ -51,13 +56,15 @@ impl Path {
         self.vertices.extend(splice.eye.iter().rev().copied());
         self.vertices.extend(base.vertices[splice.kept_from..].iter().copied());
 
+        self.place_infinite_light(scene);
+
         let first_new_edge = splice.kept_light.saturating_sub(1);
         self.edges.extend(base.edges[..first_new_edge].iter().copied());
-        for j in first_new_edge..first_kept {
+        for j in first_new_edge..first_kept.min(self.vertices.len() - 1) {
             let edge = self.new_edge(scene, j)?;
             self.edges.push(edge);
         }
-        self.edges.extend(base.edges[splice.kept_from..].iter().copied());
+        self.edges.extend(base.edges.iter().skip(splice.kept_from).copied());
         if splice.kept_from + 1 < base.vertices.len() {
             self.film = base.film;
             self.pixel = base.pixel;
@@ -94,25 +101,31 @@ impl Path {
     #[inline]
     fn connection_is_clear(&self, scene: &Tracer<'_>, j: usize) -> bool {
         let (a, b) = (&self.vertices[j], &self.vertices[j + 1]);
+        if a.is_lamp() && scene.is_infinite(a.material) {
+            return scene.visible(&scene.far_from(b.position, -a.normal), &b.anchor());
+        }
         let reach = scene.reach(a.primitive, b.primitive);
         (b.position - a.position).length_squared() > reach * reach
             && scene.visible(&a.anchor(), &b.anchor())
     }
 
+    /// Puts a light that is infinitely far away where the first edge, drawn from there, has the
+    /// direction of its light.
+    #[inline]
+    fn place_infinite_light(&mut self, scene: &Tracer<'_>) {
+        if let [light, next, ..] = self.vertices.as_mut_slice()
+            && light.is_lamp()
+            && scene.is_infinite(light.material)
+        {
+            light.position = scene.far_from(next.position, -light.normal).position;
+        }
+    }
+
     #[inline]
     fn new_edge(&self, scene: &Tracer<'_>, j: usize) -> Result<Edge, Failure> {
         let (a, b) = (&self.vertices[j], &self.vertices[j + 1]);
-        let span = b.position - a.position;
-        let length_squared = span.length_squared();
-        if !(length_squared > 0.0) {
-            return Err(Failure::Occluded);
-        }
-        let direction = span / length_squared.sqrt();
-        let cos_a = a.normal.dot(direction);
-        if a.kind == VertexKind::Light && !(cos_a > 0.0) {
-            // Lights are dark on their back.
-            return Err(Failure::ZeroContribution);
-        }
+        let (direction, at_a) =
+            if a.is_lamp() { leave_lamp(scene, a, b)? } else { leave_surface(a, b)? };
         let cos_b = -b.normal.dot(direction);
         let at_b = if b.kind == VertexKind::Eye {
             if !(cos_b > 0.0) {
@@ -122,13 +135,14 @@ impl Path {
         } else {
             cos_b.abs()
         };
-        Ok(Edge { direction, geometry: cos_a.abs() * at_b / length_squared })
+        Ok(Edge { direction, geometry: at_a * at_b })
     }
 
     /// The film point: drawn by the walk from the lens, or found by projection.
     fn find_film_point(&mut self, scene: &Tracer<'_>, drawn: Option<DVec2>) -> Result<(), Failure> {
         let camera = scene.camera();
-        let projected = || camera.project(-self.edges.last()?.direction);
+        let lens = self.vertices[self.edges.len()].position;
+        let projected = || camera.project_from(lens, -self.edges.last()?.direction);
         let film = drawn.or_else(projected).ok_or(Failure::OffFilm)?;
         self.film = film;
         self.pixel = camera.pixel(film) as u32;
@@ -154,18 +168,25 @@ impl Path {
     }
 
     /// Colour, reciprocals, their sum and the mask of connectable vertices.
+    ///
+    /// A lamp has no size: seen directly it would light a single point of the film, which no
+    /// picture shows.
     fn weigh(&mut self, scene: &Tracer<'_>) -> Result<(), Failure> {
         let k = self.edges.len();
-        let emission =
-            scene.emission(self.vertices[0].primitive).ok_or(Failure::ZeroContribution)?;
-        self.color = emission.radiance;
+        let light = &self.vertices[0];
+        let emission = scene
+            .emission(light.primitive, light.material, self.edges[0].direction)
+            .filter(|emission| emission.hittable || k > 1)
+            .ok_or(Failure::ZeroContribution)?;
+        self.color = emission.color;
+        self.lit_from_afar = light.is_lamp() && scene.is_infinite(light.material);
         self.connectable = 1 | 1 << k;
         for j in 1..k {
             self.color *= self.scattering[j].color;
             self.connectable |= u128::from(!self.vertices[j].event.is_specular()) << j;
         }
         self.luminance = self.color.luminance();
-        self.weigh_splits(emission.area_pdf);
+        self.weigh_splits(&emission);
         self.density_sum = self.reciprocals.iter().sum::<f64>() / self.luminance;
         if self.color == Rgb::BLACK {
             return Err(Failure::ZeroContribution);
@@ -179,7 +200,7 @@ impl Path {
 
     /// The reciprocals of the scalar parts of all `C_i`: (light prefix) x (connection) x (eye
     /// suffix). Densities and Dirac deltas of traced edges have cancelled in the weights.
-    fn weigh_splits(&mut self, light_area_pdf: f64) {
+    fn weigh_splits(&mut self, emission: &Emission) {
         let k = self.edges.len();
         // First the eye suffixes: entry j holds the weight of making vertices j..=k from the eye.
         self.reciprocals.clear();
@@ -188,16 +209,51 @@ impl Path {
             self.reciprocals[j] = self.reciprocals[j + 1] * self.scattering[j + 1].eye_weight;
         }
         // A light that is hit needs no connection.
-        self.reciprocals[0] = 1.0 / self.reciprocals[0];
-        let mut prefix = 1.0 / light_area_pdf;
+        self.reciprocals[0] = if emission.hittable { 1.0 / self.reciprocals[0] } else { 0.0 };
+        let mut prefix = 1.0 / emission.pdf;
+        let mut at_light = emission.connection;
         for i in 0..k {
-            let connection = self.scattering[i].connection
+            let connection = at_light
+                * self.scattering[i].connection
                 * self.edges[i].geometry
                 * self.scattering[i + 1].connection;
             let contribution = prefix * connection * self.reciprocals[i + 1];
             self.reciprocals[i + 1] = if connection > 0.0 { 1.0 / contribution } else { 0.0 };
-            // Emission is drawn with density cos / pi, so its weight is pi.
-            prefix *= if i == 0 { PI } else { self.scattering[i].light_weight };
+            prefix *= if i == 0 { emission.walk } else { self.scattering[i].light_weight };
+            at_light = 1.0;
         }
     }
+}
+
+/// The unit direction from `a` to `b`, and what the end at `a` gives to the edge.
+#[inline]
+fn leave_surface(a: &Vertex, b: &Vertex) -> Result<(DVec3, f64), Failure> {
+    let (direction, length_squared) = between(a, b)?;
+    let cos_a = a.normal.dot(direction);
+    if a.kind == VertexKind::Light && !(cos_a > 0.0) {
+        // Lights are dark on their back.
+        return Err(Failure::ZeroContribution);
+    }
+    Ok((direction, cos_a.abs() / length_squared))
+}
+
+/// The same for a light without a surface: no cosine, and from infinitely far away no distance.
+#[cold]
+fn leave_lamp(scene: &Tracer<'_>, a: &Vertex, b: &Vertex) -> Result<(DVec3, f64), Failure> {
+    if scene.is_infinite(a.material) {
+        return Ok((a.normal, 1.0));
+    }
+    let (direction, length_squared) = between(a, b)?;
+    Ok((direction, 1.0 / length_squared))
+}
+
+/// The unit direction from `a` to `b`, and their distance squared.
+#[inline]
+fn between(a: &Vertex, b: &Vertex) -> Result<(DVec3, f64), Failure> {
+    let span = b.position - a.position;
+    let length_squared = span.length_squared();
+    if !(length_squared > 0.0) {
+        return Err(Failure::Occluded);
+    }
+    Ok((span / length_squared.sqrt(), length_squared))
 }

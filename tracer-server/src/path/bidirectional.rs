@@ -1,12 +1,11 @@
 //! Bidirectional path tracing as a source of weighted paths [Veach and Guibas 1995].
 
 use arrayvec::ArrayVec;
-use common::VertexKind;
 use glam::DVec2;
 
 use super::resample::{end_on_light, open_for_connection};
-use super::walk::{emit, extend, light_vertex, scatter};
-use super::{MAX_VERTICES, Numbers, Path, ROW, Splice, Strand, Vertex, Vertices, camera_vertex};
+use super::walk::{Aim, emit, extend, light_vertex, scatter};
+use super::{MAX_VERTICES, Numbers, Path, ROW, Splice, Strand, Vertex, Vertices};
 use crate::bsdf::Scatter as _;
 use crate::scene::Tracer;
 
@@ -23,6 +22,7 @@ struct Subpath {
 /// Draws bidirectional samples; holds the room for them.
 #[derive(Clone, Debug)]
 pub struct BidirectionalSampler {
+    /// Only the vertex on the lens.
     lens: Path,
     light: Subpath,
     eye: Subpath,
@@ -58,6 +58,9 @@ impl Subpath {
             }
             let Ok(next) = extend(scene, &at, direction) else { return };
             self.push(next, survival);
+            if next.is_lamp() {
+                return;
+            }
             let last = self.vertices.len() - 1;
             let [u @ .., roulette] = numbers(made);
             if last + 1 >= SURE_VERTICES {
@@ -75,11 +78,11 @@ impl Subpath {
         }
     }
 
-    /// The first `count` vertices, the last of them open for a connection; `None` when it cannot
-    /// be connected.
-    fn open_end(&self, scene: &Tracer<'_>, count: usize) -> Option<Vertices> {
+    /// The first `count` vertices, the last of them open for a connection, unless it is the start
+    /// of the path on a light; `None` when it cannot be connected.
+    fn open_end(&self, scene: &Tracer<'_>, count: usize, on_light: bool) -> Option<Vertices> {
         let mut vertices: Vertices = self.vertices[..count].iter().copied().collect();
-        if let Some(end) = vertices.last_mut().filter(|v| v.kind != VertexKind::Light) {
+        if let Some(end) = vertices.last_mut().filter(|_| !on_light) {
             open_for_connection(scene, end).ok()?;
         }
         Some(vertices)
@@ -97,7 +100,7 @@ impl BidirectionalSampler {
         }
     }
 
-    /// Draws one sample with the eye walk through `film` and calls `visit` with every complete path
+    /// Draws one sample whose eye walk begins with `aim` and calls `visit` with every complete path
     /// in it and the path's weight.
     ///
     /// The sum of `weight * h(path) * path.unit_color()` over the paths has the expectation
@@ -106,22 +109,22 @@ impl BidirectionalSampler {
     pub fn sample(
         &mut self,
         scene: &Tracer<'_>,
-        film: DVec2,
+        aim: Aim,
         numbers: &mut impl Numbers,
         mut visit: impl FnMut(&Path, f64),
     ) {
         let limit = scene.max_edges();
         self.light.clear();
         self.eye.clear();
-        let lens = camera_vertex(scene);
-        let direction = scene.camera().direction(film);
-        self.eye.grow(scene, &lens, direction, limit, |j| {
+        let Aim { film, lens } = aim;
+        self.lens = Path::from_lens(lens);
+        self.eye.grow(scene, &lens, aim.direction(scene), limit, |j| {
             numbers.row(Strand::Eye, Strand::Eye.scattering_row(j))
         });
         let lamp = light_vertex(scene, numbers.row(Strand::Light, 0));
-        let direction = emit(&lamp, numbers.row(Strand::Light, 1));
+        let (from, direction) = emit(scene, &lamp, numbers.row(Strand::Light, 1));
         self.light.push(lamp, 1.0);
-        self.light.grow(scene, &lamp, direction, limit, |j| {
+        self.light.grow(scene, &from, direction, limit, |j| {
             numbers.row(Strand::Light, Strand::Light.scattering_row(j))
         });
 
@@ -166,9 +169,9 @@ impl BidirectionalSampler {
         let eye_survival = if eye > 0 { eye_walk.survival[eye - 1] } else { 1.0 };
         // The lens, `eye` vertices and `light` vertices make `eye + light` edges.
         let most = light_walk.vertices.len().min(scene.max_edges() - eye);
-        let Some(eye_part) = eye_walk.open_end(scene, eye) else { return };
+        let Some(eye_part) = eye_walk.open_end(scene, eye, false) else { return };
         for light in 1..=most {
-            let Some(light_part) = light_walk.open_end(scene, light) else { continue };
+            let Some(light_part) = light_walk.open_end(scene, light, light == 1) else { continue };
             let splice = Splice {
                 base: lens,
                 kept_light: 0,

@@ -25,7 +25,7 @@ pub use numbers::{Numbers, ROW, Strand};
 pub use resample::{Draft, Range, end_on_light, open_for_connection, resample};
 pub use tape::Tape;
 pub use vertex::Vertex;
-pub use walk::{camera_vertex, emit, extend, invert_emission, light_vertex, scatter};
+pub use walk::{Aim, emit, extend, lens_vertex, light_vertex, scatter};
 
 use arrayvec::ArrayVec;
 use common::Rgb;
@@ -46,7 +46,8 @@ pub struct Edge {
     /// Unit direction from light to eye.
     pub direction: DVec3,
     /// What the edge contributes to a connection: `|cos| |cos| / r^2`, per unit area; on the edge
-    /// to the lens `|cos| / r^2` times film area per solid angle.
+    /// to the lens `|cos| / r^2` times film area per solid angle. The cosine at a point light is
+    /// one, and from a light infinitely far away there is neither a cosine nor `r^2`.
     pub geometry: f64,
 }
 
@@ -72,6 +73,8 @@ pub struct Path {
     pixel: u32,
     /// Bit `j` is set when vertex `j` can be connected.
     connectable: u128,
+    /// The start is infinitely far away.
+    lit_from_afar: bool,
 }
 
 /// Stands for the scattering of the two ends of a path, which do not scatter.
@@ -98,6 +101,7 @@ impl Default for Path {
             film: DVec2::ZERO,
             pixel: 0,
             connectable: 0,
+            lit_from_afar: false,
         }
     }
 }
@@ -193,17 +197,24 @@ impl Path {
     /// Builds the path anew from its vertices and compares every cached value; false when one is
     /// stale.
     pub fn is_fresh(&self, scene: &Tracer<'_>) -> bool {
-        let lens = Self::at_lens(scene);
+        let Some((&lens, inner)) = self.vertices.split_last() else { return false };
+        let lens = Self::from_lens(lens);
         let splice = Splice {
             base: &lens,
             kept_light: 0,
-            light: &self.vertices[..self.vertices.len().saturating_sub(1)],
+            light: inner,
             eye: &[],
             kept_from: 0,
             film: Some(self.film),
         };
         let mut fresh = Self::default();
         fresh.splice(scene, &splice).is_ok() && fresh == *self
+    }
+
+    /// True when the path starts in a direction, on the sun or the sky.
+    #[inline]
+    pub fn is_lit_from_afar(&self) -> bool {
+        self.lit_from_afar
     }
 
     /// Heckbert's class, such as `LDSE`.

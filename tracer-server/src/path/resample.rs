@@ -2,22 +2,21 @@
 
 use glam::DVec2;
 
-use super::walk::{emit, light_vertex, scatter, walk};
+use super::walk::{Aim, emit, light_vertex, scatter, walk};
 use super::{Failure, Numbers, Path, Splice, Strand, Vertex, Vertices};
 use crate::bsdf::Scatter as _;
 use crate::scene::Tracer;
-use common::VertexKind;
 
 /// Which vertices are deleted and how many are made from each side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Range {
     /// Vertices kept from the light end.
     pub kept_light: usize,
-    /// First vertex kept at the eye end.
+    /// First vertex kept at the eye end; one past the lens when the lens point is replaced too.
     pub kept_from: usize,
     /// Vertices to make by a walk from the light side.
     pub from_light: usize,
-    /// Vertices to make by a walk from the eye side.
+    /// Vertices to make by a walk from the eye side, a new lens point included.
     pub from_eye: usize,
 }
 
@@ -68,10 +67,11 @@ fn join(
 ) -> Result<(), Failure> {
     let connected = range.kept_light + range.from_light > 0;
     if connected {
-        if let Some(end) = draft.light.last_mut().filter(|v| v.kind != VertexKind::Light) {
+        let starts_on_light = range.kept_light == 0 && draft.light.len() == 1;
+        if let Some(end) = draft.light.last_mut().filter(|_| !starts_on_light) {
             open_for_connection(scene, end)?;
         }
-        if let Some(end) = draft.eye.last_mut() {
+        if let Some(end) = draft.eye.last_mut().filter(|v| !v.is_lens()) {
             open_for_connection(scene, end)?;
         }
     } else {
@@ -92,6 +92,9 @@ fn join(
 /// Lets the end of a walk take part in an explicit connection.
 #[inline]
 pub fn open_for_connection(scene: &Tracer<'_>, end: &mut Vertex) -> Result<(), Failure> {
+    if end.is_lamp() {
+        return Err(Failure::LeftScene);
+    }
     let event = scene.bsdf(end.material).connectable().ok_or(Failure::SpecularConnection)?;
     end.set_event(event);
     Ok(())
@@ -100,7 +103,12 @@ pub fn open_for_connection(scene: &Tracer<'_>, end: &mut Vertex) -> Result<(), F
 /// Declares that a path from the eye ends on the light it has hit.
 #[inline]
 pub fn end_on_light(scene: &Tracer<'_>, end: &mut Vertex) -> Result<(), Failure> {
-    scene.emission(end.primitive).ok_or(Failure::NoLightHit)?;
+    if end.is_lamp() {
+        return Ok(());
+    }
+    if end.is_lens() || !scene.is_light(end.primitive) {
+        return Err(Failure::NoLightHit);
+    }
     end.set_light();
     Ok(())
 }
@@ -124,9 +132,9 @@ fn walk_from_light(
             if count == 0 {
                 return Ok(());
             }
-            (start, emit(&start, numbers.row(Strand::Light, 1)))
+            emit(scene, &start, numbers.row(Strand::Light, 1))
         }
-        1 => (x.vertices()[0], emit(&x.vertices()[0], numbers.row(Strand::Light, 1))),
+        1 => emit(scene, &x.vertices()[0], numbers.row(Strand::Light, 1)),
         kept => {
             let mut start = x.vertices()[kept - 1];
             let back = -x.edges()[kept - 2].direction;
@@ -150,17 +158,33 @@ fn walk_from_eye(
     if range.from_eye == 0 {
         return Ok(None);
     }
-    let mut start = x.vertices()[range.kept_from];
-    // Vertices kept behind the lens, which is number zero of the walk.
-    let kept = x.edge_count() - range.kept_from;
-    let (direction, film) = if start.is_lens() {
+    let mut count = range.from_eye;
+    let aim = if range.kept_from > x.edge_count() {
+        // Without a walk the film point is not used: the connection tells it.
+        let aim = Aim::from_numbers(scene, numbers);
+        out.push(aim.lens);
+        count -= 1;
+        if count == 0 {
+            return Ok(None);
+        }
+        Some(aim)
+    } else if x.vertices()[range.kept_from].is_lens() {
         let film = DVec2::from(numbers.row(Strand::Eye, 0));
-        (scene.camera().direction(film), Some(film))
+        Some(Aim { film, lens: x.vertices()[range.kept_from] })
     } else {
+        None
+    };
+    // Vertices kept behind the lens, which is number zero of the walk.
+    let kept = x.edge_count().saturating_sub(range.kept_from);
+    let (start, direction) = if let Some(aim) = &aim {
+        (aim.lens, aim.direction(scene))
+    } else {
+        let mut start = x.vertices()[range.kept_from];
         let back = x.edges()[range.kept_from].direction;
-        (scatter(scene, &mut start, back, numbers.row(Strand::Eye, kept))?, None)
+        let onward = scatter(scene, &mut start, back, numbers.row(Strand::Eye, kept))?;
+        (start, onward)
     };
     let scattering = |j| numbers.row(Strand::Eye, Strand::Eye.scattering_row(kept + j));
-    walk(scene, &start, direction, range.from_eye, scattering, out)?;
-    Ok(film)
+    walk(scene, &start, direction, count, scattering, out)?;
+    Ok(aim.map(|aim| aim.film))
 }

@@ -3,7 +3,7 @@
 use arrayvec::ArrayVec;
 
 use super::numbers::ROW;
-use super::{MAX_VERTICES, Path, Strand, invert_emission};
+use super::{MAX_VERTICES, Path, Strand};
 use crate::bsdf::Scatter as _;
 use crate::math::Rng;
 use crate::scene::Tracer;
@@ -34,13 +34,14 @@ impl Tape {
         count: usize,
         rng: &mut Rng,
     ) -> Option<()> {
-        let start = x.vertices().first()?;
+        let [start, next, ..] = x.vertices() else { return None };
+        let start = start.light_sample();
         if count > 0 {
-            let [choice, u, v] = scene.invert_light(start.primitive, start.position, rng)?;
+            let [choice, u, v] = scene.invert_light(&start, rng)?;
             self.light.push([choice, u, v, 0.0]);
         }
         if count > 1 {
-            let [u, v] = invert_emission(start, x.edges()[0].direction);
+            let [u, v] = scene.invert_emission(&start, x.edges()[0].direction, next.position);
             self.light.push([u, v, 0.0, 0.0]);
         }
         // The event of the last vertex of a walk is no draw: the connection decides it.
@@ -55,10 +56,13 @@ impl Tape {
     }
 
     fn invert_eye_walk(&mut self, scene: &Tracer<'_>, x: &Path, count: usize, rng: &mut Rng) {
-        if count > 0 {
+        let (k, camera) = (x.edge_count(), scene.camera());
+        if camera.has_aperture() {
+            let [u, v] = camera.invert_lens_point(x.vertices()[k].position);
+            self.eye.push([x.film().x, x.film().y, u, v]);
+        } else if count > 0 {
             self.eye.push([x.film().x, x.film().y, 0.0, 0.0]);
         }
-        let k = x.edge_count();
         for j in (k - count + 1..k).rev() {
             let (back, onward) = (x.edges()[j].direction, -x.edges()[j - 1].direction);
             let at = &x.vertices()[j];

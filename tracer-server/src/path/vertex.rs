@@ -3,7 +3,7 @@
 use common::{Event, VertexKind};
 use glam::DVec3;
 
-use crate::scene::{Anchor, Hit, NO_PRIMITIVE};
+use crate::scene::{Anchor, Hit, LightSample, NO_PRIMITIVE};
 
 /// A point of a path and what happens there. Kind and event belong to the path, not to the
 /// material: the same point with another event is another path.
@@ -11,11 +11,12 @@ use crate::scene::{Anchor, Hit, NO_PRIMITIVE};
 pub struct Vertex {
     /// Where, in scene units.
     pub position: DVec3,
-    /// Unit geometric normal on the front side; the view direction on the lens.
+    /// Unit geometric normal on the front side; the view direction on the lens; on a light
+    /// infinitely far away the direction in which its light travels.
     pub normal: DVec3,
-    /// The primitive; [`NO_PRIMITIVE`] on the lens.
+    /// The primitive; [`NO_PRIMITIVE`] on the lens and on lights without a surface.
     pub primitive: u32,
-    /// Index of the material; zero on the lens.
+    /// Index of the material, or of the light without a surface; zero on the lens.
     pub material: u16,
     /// Heckbert's letter.
     pub kind: VertexKind,
@@ -59,6 +60,18 @@ impl Vertex {
 
     /// True on the lens.
     pub fn is_lens(&self) -> bool {
-        self.primitive == NO_PRIMITIVE
+        self.kind == VertexKind::Eye
+    }
+
+    /// True on a light without a surface, the sky included.
+    #[inline]
+    pub fn is_lamp(&self) -> bool {
+        self.primitive == NO_PRIMITIVE && self.kind == VertexKind::Light
+    }
+
+    /// The vertex as the start of a path.
+    #[inline]
+    pub fn light_sample(&self) -> LightSample {
+        LightSample { anchor: self.anchor(), material: self.material }
     }
 }

@@ -6,8 +6,10 @@ use thiserror::Error;
 
 use super::accel::{Accel, Anchor};
 use super::appearance::surface;
-use super::description::SceneDescription;
+use super::description::{Glow, SceneDescription};
 use super::emitter::Emitters;
+use super::lamp::{Bounds, Cone, Lamp};
+use super::sky::Sky;
 use super::surface::{Ball, NO_PRIMITIVE, Triangle};
 use super::{MAX_EDGES, NO_EMITTER, Primitive, Scene, SceneFeatures, SurfaceMaterial, hash};
 
@@ -18,7 +20,7 @@ pub enum SceneError {
     #[error("the scene has no surface: it needs at least one triangle or sphere of non-zero size")]
     Empty,
     /// No light.
-    #[error("the scene has no light: give at least one material an emission")]
+    #[error("the scene has no light: give at least one material an emission, or add a light")]
     NoLight,
     /// A vertex or radius that is no finite number.
     #[error("{shape} has a coordinate that is not a finite number")]
@@ -58,6 +60,9 @@ impl Scene {
         let mut camera = Camera::new(&description.camera, description.width, description.height)?;
         let frame = normalising_frame(description)?;
         camera.origin = frame.to_scene(camera.origin);
+        if let Some(lens) = description.lens {
+            (camera.aperture, camera.focus) = (lens.radius * frame.scale, lens.focus * frame.scale);
+        }
 
         let mut warnings = Vec::new();
         let (triangles, mut materials) = gather_triangles(description, frame, &mut warnings)?;
@@ -67,7 +72,8 @@ impl Scene {
         }
         let emits =
             |material: u16| !description.materials[usize::from(material)].emission.is_black();
-        if !materials.iter().any(|&m| emits(m)) {
+        let shines = description.lights.iter().any(|light| !light.glow.is_dark());
+        if !shines && !materials.iter().any(|&m| emits(m)) {
             return Err(SceneError::NoLight);
         }
         let spheres = balls.len();
@@ -86,7 +92,8 @@ impl Scene {
             }
             accel = Accel::new(triangles, accel.balls().to_vec());
         }
-        let (emitters, primitives, radiance_scale) = light_up(description, &accel, &materials);
+        let (emitters, primitives, radiance_scale) =
+            light_up(description, frame, &accel, &materials);
         let surfaces: Vec<SurfaceMaterial> = description
             .materials
             .iter()
@@ -96,7 +103,7 @@ impl Scene {
         used.sort_unstable();
         used.dedup();
         let used: Vec<_> = used.into_iter().map(|m| &surfaces[usize::from(m)].bsdf).collect();
-        let features = SceneFeatures::of(&used, spheres);
+        let features = SceneFeatures::of(&used, spheres, &emitters, &camera);
         Ok(Self {
             name: description.name.clone(),
             hash: hash::digest(description),
@@ -109,6 +116,7 @@ impl Scene {
             primitives,
             surfaces,
             emitters,
+            lamp_names: description.lights.iter().map(|light| light.name.clone()).collect(),
             warnings,
         })
     }
@@ -235,6 +243,7 @@ fn lifted_lights(accel: &Accel, is_light: impl Fn(usize) -> bool) -> Vec<(usize,
 /// Emitters, the table of primitives, and the power of two that emission is divided by.
 fn light_up(
     description: &SceneDescription,
+    frame: SceneFrame,
     accel: &Accel,
     materials: &[u16],
 ) -> (Emitters, Vec<Primitive>, f64) {
@@ -251,10 +260,56 @@ fn light_up(
         }
         primitives.push(Primitive { material, emitter });
     }
-    let power: f64 = sources.iter().map(|&(_, radiance, area)| radiance.luminance() * area).sum();
+    let bounds = bounds(accel);
+    let mut lamps: Vec<Lamp> =
+        description.lights.iter().map(|light| lamp(&light.glow, frame)).collect();
+    let of_surfaces: f64 =
+        sources.iter().map(|&(_, radiance, area)| radiance.luminance() * area).sum();
+    let power = of_surfaces + lamps.iter().map(|lamp| lamp.power(&bounds)).sum::<f64>();
     let radiance_scale = 2_f64.powi(exponent(power).clamp(-1000, 1000));
     for (_, radiance, _) in &mut sources {
         *radiance = *radiance / radiance_scale;
     }
-    (Emitters::new(&sources), primitives, radiance_scale)
+    for lamp in &mut lamps {
+        lamp.dim(radiance_scale);
+    }
+    (Emitters::new(&sources, lamps, bounds), primitives, radiance_scale)
+}
+
+/// The ball around the box around all surfaces.
+fn bounds(accel: &Accel) -> Bounds {
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for corner in accel.triangles().iter().flat_map(Triangle::corners) {
+        (low, high) = (low.min(corner), high.max(corner));
+    }
+    for ball in accel.balls() {
+        (low, high) = (low.min(ball.centre - ball.radius), high.max(ball.centre + ball.radius));
+    }
+    Bounds { centre: 0.5 * (low + high), radius: 0.5 * (high - low).length() }
+}
+
+/// A lamp in scene units. Intensity grows with the square of the unit of length.
+fn lamp(glow: &Glow, frame: SceneFrame) -> Lamp {
+    let area = frame.scale * frame.scale;
+    match *glow {
+        Glow::Point { position, intensity } => {
+            Lamp::Point { position: frame.to_scene(position), intensity: intensity * area }
+        }
+        Glow::Spot { position, direction, intensity, cutoff, beam } => Lamp::Spot {
+            position: frame.to_scene(position),
+            intensity: intensity * area,
+            cone: Cone {
+                axis: direction.normalize_or(DVec3::NEG_Y),
+                cos_cutoff: cutoff.to_radians().cos(),
+                cos_beam: beam.to_radians().cos(),
+            },
+        },
+        Glow::Directional { direction, irradiance } => {
+            Lamp::Sun { direction: direction.normalize_or(DVec3::NEG_Y), irradiance }
+        }
+        Glow::Environment { radiance, ref image, rotation } => Lamp::Sky(match image {
+            Some(image) => Sky::of_image(image.clone(), rotation, radiance),
+            None => Sky::constant(radiance),
+        }),
+    }
 }

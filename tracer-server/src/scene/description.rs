@@ -3,7 +3,9 @@
 //! Every loader ends here, and [`super::Scene`] begins here.
 
 use common::{CameraPose, Rgb};
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DMat3, DVec3, Vec2, Vec3};
+
+use super::sky::SkyImage;
 
 pub use super::material::{BsdfDescription, Coding, ColorInput, Material, NumberInput, Texture};
 
@@ -28,6 +30,10 @@ pub struct SceneDescription {
     pub meshes: Vec<Mesh>,
     /// Analytic spheres.
     pub spheres: Vec<Sphere>,
+    /// Lights without a surface.
+    pub lights: Vec<LightDescription>,
+    /// The camera's lens; none is an ideal pinhole.
+    pub lens: Option<ThinLens>,
 }
 
 impl SceneDescription {
@@ -52,6 +58,85 @@ impl SceneDescription {
                 self.mean_color(ColorInput::Texture { texture, factor }).luminance()
             }
         }
+    }
+}
+
+/// A thin lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThinLens {
+    /// Radius of the aperture, positive.
+    pub radius: f64,
+    /// Distance along the view direction of the plane that is sharp, positive.
+    pub focus: f64,
+}
+
+/// A light without a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightDescription {
+    /// The name in the scene file.
+    pub name: String,
+    /// What it is.
+    pub glow: Glow,
+}
+
+/// The kinds of lights without a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Glow {
+    /// Shines equally in all directions.
+    Point {
+        /// Where.
+        position: DVec3,
+        /// Radiant intensity: power per solid angle.
+        intensity: Rgb,
+    },
+    /// Shines into a cone.
+    Spot {
+        /// Where.
+        position: DVec3,
+        /// Where to; of any length.
+        direction: DVec3,
+        /// Radiant intensity in the middle.
+        intensity: Rgb,
+        /// Half angle in degrees beyond which it is dark.
+        cutoff: f64,
+        /// Half angle in degrees up to which it is fully bright, at most `cutoff`; between the two
+        /// it falls smoothly.
+        beam: f64,
+    },
+    /// Parallel light from infinitely far away.
+    Directional {
+        /// Direction in which the light travels; of any length.
+        direction: DVec3,
+        /// Irradiance of a surface that faces it.
+        irradiance: Rgb,
+    },
+    /// Light from all around; at most one.
+    Environment {
+        /// Radiance, or what the texels of the image are multiplied by.
+        radiance: Rgb,
+        /// The image; without one, the radiance is the same everywhere.
+        image: Option<SkyImage>,
+        /// Turns the image's axes (see [`SkyImage`]) to those of the scene.
+        rotation: DMat3,
+    },
+}
+
+impl Glow {
+    /// What it emits, as its file tells it.
+    pub fn color(&self) -> Rgb {
+        match *self {
+            Self::Point { intensity, .. } | Self::Spot { intensity, .. } => intensity,
+            Self::Directional { irradiance, .. } => irradiance,
+            Self::Environment { radiance, .. } => radiance,
+        }
+    }
+
+    /// True when it emits nothing.
+    pub fn is_dark(&self) -> bool {
+        let black =
+            |image: &SkyImage| image.texels.iter().all(|texel| texel.iter().all(|&c| c == 0.0));
+        self.color().is_black()
+            || matches!(self, Self::Environment { image: Some(image), .. } if black(image))
     }
 }
 

@@ -223,6 +223,8 @@ pub(super) fn read(text: &str, file: &Path, name: &str) -> Result<Read, LoadErro
         textures: Vec::new(),
         meshes: Vec::new(),
         spheres: Vec::new(),
+        lights: Vec::new(),
+        lens: None,
     };
     let origins = Origins::of_text(file, text);
     let strategies = strategies::settings(&scene.strategies, text, file);

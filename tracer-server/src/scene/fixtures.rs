@@ -1,11 +1,13 @@
 //! Small scenes for the laws, built in code.
 
 use common::{CameraPose, Rgb};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
+use super::{
+    BsdfDescription, ColorInput, Glow, LightDescription, Material, Mesh, Scene, SceneDescription,
+    SkyImage, Sphere, ThinLens,
+};
 use crate::bsdf::Fresnel;
-
-use super::{BsdfDescription, ColorInput, Material, Mesh, Scene, SceneDescription, Sphere};
 
 /// Builds descriptions shape by shape.
 #[derive(Clone, Debug)]
@@ -41,6 +43,8 @@ impl Fixture {
                 textures: Vec::new(),
                 meshes: Vec::new(),
                 spheres: Vec::new(),
+                lights: Vec::new(),
+                lens: None,
             },
         }
     }
@@ -96,6 +100,17 @@ impl Fixture {
             .quad(front, emission, [-1., -1., 1.], [0., 2., 0.], [2., 0., 0.])
     }
 
+    pub(crate) fn light(mut self, glow: Glow) -> Self {
+        let name = format!("light {}", self.description.lights.len());
+        self.description.lights.push(LightDescription { name, glow });
+        self
+    }
+
+    pub(crate) fn lens(mut self, radius: f64, focus: f64) -> Self {
+        self.description.lens = Some(ThinLens { radius, focus });
+        self
+    }
+
     pub(crate) fn film(mut self, width: u32, height: u32) -> Self {
         self.description.width = width;
         self.description.height = height;
@@ -118,6 +133,18 @@ impl Fixture {
         for sphere in &mut description.spheres {
             sphere.centre *= factor;
             sphere.radius *= factor;
+        }
+        if let Some(lens) = &mut description.lens {
+            lens.radius *= factor;
+            lens.focus *= factor;
+        }
+        for light in &mut description.lights {
+            if let Glow::Point { position, intensity } | Glow::Spot { position, intensity, .. } =
+                &mut light.glow
+            {
+                *position *= factor;
+                *intensity = *intensity * (factor * factor);
+            }
         }
     }
 
@@ -246,4 +273,54 @@ pub(crate) fn wall_and_lamp_in_a_pane() -> Fixture {
         .quad(GLASS, Rgb::BLACK, [-3., -0.5, -2.], [0., 0., 6.], [6., 0., 0.])
         .quad(WHITE, Rgb::BLACK, [-3., -0.5, -2.], [6., 0., 0.], [0., 2., 0.])
         .quad(BLACK, Rgb::grey(20.0), [-3.0, 1.6, -1.9], [6., 0., 0.], [0., 0., 5.])
+}
+
+/// A room that is open to the front and above, without a light.
+fn open_room() -> Fixture {
+    Fixture::new(DVec3::new(0.1, 0.1, 2.5), DVec3::new(0.0, -0.1, -1.0), 45.0)
+        .quad(RED, Rgb::BLACK, [-1., -1., -1.], [0., 2., 0.], [0., 0., 2.])
+        .quad(GREEN, Rgb::BLACK, [1., -1., -1.], [0., 0., 2.], [0., 2., 0.])
+        .quad(WHITE, Rgb::BLACK, [-1., -1., -1.], [0., 0., 2.], [2., 0., 0.])
+        .quad(WHITE, Rgb::BLACK, [-1., -1., -1.], [2., 0., 0.], [0., 2., 0.])
+        .sphere(WHITE, Rgb::BLACK, [0.45, -0.55, -0.4], 0.4)
+        .max_edges(5)
+}
+
+/// The same with a ball of glass.
+fn open_room_with_glass() -> Fixture {
+    open_room().sphere(GLASS, Rgb::BLACK, [-0.45, -0.6, -0.1], 0.35)
+}
+
+/// A sky with a bright spot.
+pub(crate) fn image_sky() -> Glow {
+    let (width, height) = (16, 8);
+    let mut texels = vec![[0.4, 0.5, 0.7]; width * height];
+    texels[2 * width + 7] = [90.0, 80.0, 50.0];
+    texels[2 * width + 8] = [60.0, 60.0, 40.0];
+    texels[5 * width..].fill([0.1, 0.08, 0.05]);
+    let rotation = DMat3::from_rotation_y(0.4);
+    let image = Some(SkyImage { width, height, texels });
+    Glow::Environment { radiance: Rgb::new(1.0, 1.0, 0.9), image, rotation }
+}
+
+/// One fixture with each kind of light, and one with a lens that has an area.
+pub(crate) fn every_light() -> Vec<(&'static str, Fixture)> {
+    let position = DVec3::new(0.3, 0.7, 0.2);
+    let direction = DVec3::new(-0.3, -1.0, -0.3);
+    let intensity = Rgb::new(3.0, 2.5, 2.0);
+    let spot = Glow::Spot { position, direction, intensity, cutoff: 50.0, beam: 25.0 };
+    let plain = Glow::Environment {
+        radiance: Rgb::new(0.6, 0.7, 0.9),
+        image: None,
+        rotation: DMat3::IDENTITY,
+    };
+    vec![
+        ("point", open_room().light(Glow::Point { position, intensity })),
+        ("spot", open_room().light(spot)),
+        ("sun", open_room().light(Glow::Directional { direction, irradiance: intensity })),
+        ("point and glass", open_room_with_glass().light(Glow::Point { position, intensity })),
+        ("even sky", open_room_with_glass().light(plain)),
+        ("image sky", open_room_with_glass().light(image_sky())),
+        ("lens", specular_room().lens(0.05, 1.6).max_edges(5)),
+    ]
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::SceneDescription;
-use super::description::{BsdfDescription, ColorInput, NumberInput};
+use super::description::{BsdfDescription, ColorInput, Glow, NumberInput};
 use crate::bsdf::Fresnel;
 use common::Rgb;
 
@@ -41,6 +41,10 @@ pub(crate) fn digest(description: &SceneDescription) -> String {
         h.point(sphere.centre);
         h.number(sphere.radius);
         h.count(usize::from(sphere.material));
+    }
+    for light in &description.lights {
+        h.text(&light.name);
+        h.glow(&light.glow);
     }
     h.0.finalize().to_hex()[..32].to_owned()
 }
@@ -80,6 +84,32 @@ impl Digest {
         self.count(description.width as usize);
         self.count(description.height as usize);
         self.count(description.max_edges);
+        if let Some(lens) = description.lens {
+            self.number(lens.radius);
+            self.number(lens.focus);
+        }
+    }
+
+    fn glow(&mut self, glow: &Glow) {
+        self.color(glow.color());
+        match glow {
+            Glow::Point { position, .. } => self.point(*position),
+            Glow::Spot { position, direction, cutoff, beam, .. } => {
+                self.point(*position);
+                self.point(*direction);
+                self.number(*cutoff);
+                self.number(*beam);
+            }
+            Glow::Directional { direction, .. } => self.point(*direction),
+            Glow::Environment { image, rotation, .. } => {
+                rotation.to_cols_array().into_iter().for_each(|x| self.number(x));
+                if let Some(image) = image {
+                    self.count(image.width);
+                    self.count(image.height);
+                    self.0.update(bytemuck::cast_slice(&image.texels));
+                }
+            }
+        }
     }
 
     fn color_input(&mut self, input: ColorInput) {

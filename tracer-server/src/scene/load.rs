@@ -123,6 +123,8 @@ fn read_obj(path: &Path) -> Result<Read, LoadError> {
         textures: Vec::new(),
         meshes: scene.meshes,
         spheres: Vec::new(),
+        lights: Vec::new(),
+        lens: None,
     };
     Ok(Read { description, origins, warnings: scene.warnings, strategies: Vec::new() })
 }

@@ -14,6 +14,8 @@ mod file;
 #[cfg(test)]
 pub(crate) mod fixtures;
 mod hash;
+mod lamp;
+mod light;
 pub mod load;
 #[cfg(test)]
 mod malformed;
@@ -26,6 +28,7 @@ mod obj_text;
 mod origin;
 mod preview;
 mod shape;
+mod sky;
 mod strategies;
 mod surface;
 mod text;
@@ -38,17 +41,18 @@ use common::{Camera, Rgb, SceneFrame};
 use glam::DVec3;
 
 use crate::bsdf::Bsdf;
-use crate::math::{Rng, below_one};
 use accel::Accel;
 use emitter::Emitters;
 
 pub use accel::{Anchor, Hit};
 pub use build::SceneError;
 pub use description::{
-    BsdfDescription, Coding, ColorInput, Material, Mesh, NumberInput, SceneDescription, Sphere,
-    Texture,
+    BsdfDescription, Coding, ColorInput, Glow, LightDescription, Material, Mesh, NumberInput,
+    SceneDescription, Sphere, Texture, ThinLens,
 };
 pub use features::SceneFeatures;
+pub use light::{Emission, LightSample};
+pub use sky::SkyImage;
 pub use strategies::{StrategySetting, Wish};
 pub use surface::NO_PRIMITIVE;
 pub use tracer::{RayCounts, Tracer};
@@ -76,6 +80,8 @@ pub struct Scene {
     primitives: Vec<Primitive>,
     surfaces: Vec<SurfaceMaterial>,
     emitters: Emitters,
+    /// Of the lights without a surface.
+    lamp_names: Vec<String>,
     warnings: Vec<String>,
 }
 
@@ -92,24 +98,6 @@ struct SurfaceMaterial {
     bsdf: Bsdf,
     /// Radiance in scene units.
     emission: Rgb,
-}
-
-/// A point on a light, with all that a path needs of it.
-#[derive(Clone, Copy, Debug)]
-pub struct LightSample {
-    /// Where it is.
-    pub anchor: Anchor,
-    /// Index of its material.
-    pub material: u16,
-}
-
-/// What a light emits and how likely its points are drawn.
-#[derive(Clone, Copy, Debug)]
-pub struct Emission {
-    /// Radiance on the front side.
-    pub radiance: Rgb,
-    /// Density with which [`Scene::sample_light`] draws the point, per unit area.
-    pub area_pdf: f64,
 }
 
 impl Scene {
@@ -187,45 +175,5 @@ impl Scene {
     /// The scattering models of all materials; a textured one with the mean of its texture.
     pub fn models(&self) -> impl Iterator<Item = &Bsdf> {
         self.surfaces.iter().map(|surface| &surface.bsdf)
-    }
-
-    /// What a primitive emits; `None` where it is no light.
-    #[inline]
-    pub fn emission(&self, primitive: u32) -> Option<Emission> {
-        let emitter = self.emitters.get(self.primitives.get(primitive as usize)?.emitter)?;
-        let area_pdf = emitter.probability / emitter.area;
-        Some(Emission { radiance: emitter.radiance, area_pdf })
-    }
-
-    /// A point on a light with the density that [`Emission::area_pdf`] tells, made of uniform
-    /// numbers: the first chooses the light, the other two the point on it.
-    #[inline]
-    pub fn sample_light(&self, [choice, u, v]: [f64; 3]) -> LightSample {
-        let index = self.emitters.choose(choice);
-        let primitive = self.emitters.list()[index as usize].primitive;
-        let (position, normal) = match self.accel.triangles().get(primitive as usize) {
-            Some(triangle) => (triangle.sample(u, v), triangle.normal),
-            None => {
-                self.accel.balls()[primitive as usize - self.accel.triangles().len()].sample(u, v)
-            }
-        };
-        let anchor = Anchor { position, normal, primitive };
-        LightSample { anchor, material: self.material_of(primitive) }
-    }
-
-    /// Numbers from which [`Scene::sample_light`] would have made the point `at` of a light; `None`
-    /// where the primitive is no light. Among the many numbers that choose the light `rng` draws one
-    /// uniformly.
-    pub fn invert_light(&self, primitive: u32, at: DVec3, rng: &mut Rng) -> Option<[f64; 3]> {
-        let emitter = self.primitives.get(primitive as usize)?.emitter;
-        self.emitters.get(emitter)?;
-        let (from, to) = self.emitters.share(emitter);
-        let choice = below_one(from + rng.uniform() * (to - from));
-        let triangles = self.accel.triangles();
-        let [u, v] = match triangles.get(primitive as usize) {
-            Some(triangle) => triangle.invert(at),
-            None => self.accel.balls()[primitive as usize - triangles.len()].invert(at),
-        };
-        Some([choice, u, v])
     }
 }

@@ -17,7 +17,7 @@ impl Scene {
     /// All surfaces as flat-shaded triangles and smooth spheres, in scene units.
     pub fn preview_mesh(&self) -> SceneMesh {
         let mut mesh = SceneMesh {
-            materials: self.surfaces.iter().map(|s| self.material_info(s)).collect(),
+            materials: self.material_infos().collect(),
             camera: Some(self.camera),
             ..SceneMesh::default()
         };
@@ -64,6 +64,19 @@ impl Scene {
                 }
             }
         }
+    }
+
+    /// The surfaces' materials, then the lights without a surface.
+    fn material_infos(&self) -> impl Iterator<Item = MaterialInfo> {
+        let lamps =
+            self.emitters.lamps().iter().zip(&self.lamp_names).map(|(lamp, name)| MaterialInfo {
+                name: name.clone(),
+                model: lamp.kind().to_owned(),
+                color: Rgb::BLACK,
+                emission: lamp.color() * self.radiance_scale,
+                transparent: false,
+            });
+        self.surfaces.iter().map(|s| self.material_info(s)).chain(lamps)
     }
 
     fn material_info(&self, surface: &super::SurfaceMaterial) -> MaterialInfo {

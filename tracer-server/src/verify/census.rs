@@ -2,11 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use glam::DVec2;
-
 use crate::math::{Rng, Stream};
 use crate::parallel;
-use crate::path::{BidirectionalSampler, ClassKey, Path};
+use crate::path::{Aim, BidirectionalSampler, ClassKey, Path};
 use crate::scene::{Scene, Tracer};
 
 /// Samples that one stream of random numbers serves.
@@ -56,8 +54,8 @@ impl Census {
         let mut census = Self { samples: CHUNK, ..Self::default() };
         let mut sample: Vec<(ClassKey, f64)> = Vec::new();
         for _ in 0..CHUNK {
-            let film = DVec2::new(rng.uniform(), rng.uniform());
-            sampler.sample(scene, film, &mut rng, |path, weight| {
+            let aim = Aim::from_numbers(scene, &mut rng);
+            sampler.sample(scene, aim, &mut rng, |path, weight| {
                 let key = ClassKey::of(path);
                 let class = census.classes.entry(key);
                 class

@@ -4,7 +4,6 @@
 //! rejections included, must leave the expectation of every function of the path as it was. No
 //! burn-in, no reference image and no convergence is involved.
 
-use glam::DVec2;
 use tests::Accumulator;
 
 use super::flow::Flows;
@@ -12,7 +11,7 @@ use super::functionals;
 use crate::math::{Rng, Stream};
 use crate::mutation::{Proposal, Strategy};
 use crate::parallel;
-use crate::path::{BidirectionalSampler, ClassKey, Draft, Failure, Path};
+use crate::path::{Aim, BidirectionalSampler, ClassKey, Draft, Failure, Path};
 use crate::scene::{Scene, Tracer};
 
 /// Samples that one stream of random numbers serves.
@@ -228,10 +227,10 @@ impl<'s> Bench<'s> {
         let key = |index: u64| run.number << 44 | index << 1;
         let mut rng = Rng::new(run.seed, Stream::Verification, key(number));
         for sample in 0..CHUNK {
-            let film = DVec2::new(rng.uniform(), rng.uniform());
+            let aim = Aim::from_numbers(scene, &mut rng);
             hand.rng = Rng::new(run.seed, Stream::Verification, key(number * CHUNK + sample) | 1);
             hand.sums.fill(0.0);
-            sampler.sample(scene, film, &mut rng, |path, weight| {
+            sampler.sample(scene, aim, &mut rng, |path, weight| {
                 hand.try_all(scene, (path, weight), propose, run.test, &mut gathered);
             });
             for (watched, &sum) in gathered.watched.iter_mut().zip(&hand.sums) {

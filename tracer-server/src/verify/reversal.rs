@@ -1,11 +1,9 @@
 //! Whether the way back is open: what can be checked of every single move.
 
-use glam::DVec2;
-
 use super::judge::{Finding, Verdict};
 use crate::math::{Rng, Stream};
 use crate::mutation::{Flaw, Inspection, Strategy};
-use crate::path::{BidirectionalSampler, Draft, Path};
+use crate::path::{Aim, BidirectionalSampler, Draft, Path};
 use crate::scene::{Scene, Tracer};
 
 /// How far the product of a ratio and that of the reverse move may be from one.
@@ -37,9 +35,9 @@ pub fn reversals(scene: &Scene, strategy: &Strategy, seed: u64, samples: u64) ->
     let (mut x, mut y): (Box<Path>, Box<Path>) = Default::default();
     let mut seen = Reversals::default();
     for _ in 0..samples {
-        let film = DVec2::new(rng.uniform(), rng.uniform());
+        let aim = Aim::from_numbers(&scene, &mut rng);
         let mut paths = 0.0;
-        sampler.sample(&scene, film, &mut rng, |path, _| {
+        sampler.sample(&scene, aim, &mut rng, |path, _| {
             // Each of the sample's paths to which the strategy applies, with equal chance.
             if strategy.applicable(path) {
                 paths += 1.0;
