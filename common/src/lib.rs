@@ -14,8 +14,9 @@ mod metric;
 mod session;
 
 pub use batch::{
-    BatchBuilder, BatchError, BatchLimits, Completed, NORMAL_SCALE, PathBatch, PathColumns,
-    PathHeader, PathReader, PathView, VertexColumns, VertexRecord, decode_normal, encode_normal,
+    BatchBuilder, BatchError, BatchLimits, BatchOrigin, Completed, NORMAL_SCALE, PathBatch,
+    PathColumns, PathHeader, PathReader, PathView, VertexColumns, VertexRecord, decode_normal,
+    encode_normal,
 };
 pub use camera::{Camera, CameraError, CameraPose};
 pub use color::Rgb;
@@ -29,6 +30,6 @@ pub use id::{ChainId, MaterialId, PathId, StrategyId};
 pub use mesh::{MaterialInfo, SceneFrame, SceneMesh};
 pub use metric::{mean_ratio, relative_mse};
 pub use session::{
-    ChainTotals, FailureCount, FilmFrame, FilmTile, Gap, Role, Statistics, StrategyStatistics,
-    Welcome,
+    ChainTotals, FailureCount, FilmFrame, FilmTile, FilterReply, Gap, Role, Statistics,
+    StrategyStatistics, Welcome,
 };

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Camera, Rgb, SceneFrame};
+use crate::{Camera, FilterCounts, FilterError, Rgb, SceneFrame};
 
 /// What a viewer may do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -109,10 +109,27 @@ pub struct Statistics {
     pub paths_dropped: u64,
     /// Bytes waiting in this viewer's data lane.
     pub queued_bytes: u64,
+    /// What this viewer's filter saw since it was set.
+    pub filter: FilterCounts,
+}
+
+/// The tracer's answer to a filter that a viewer set.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FilterReply {
+    /// The number that the viewer gave the filter.
+    pub revision: u32,
+    /// The epoch in which it came into force.
+    pub epoch: u32,
+    /// The filter's text as the tracer understood it; empty where it was refused.
+    pub text: String,
+    /// The filter's conditions, in the order of [`FilterCounts::conditions`].
+    pub conditions: Vec<String>,
+    /// Why it was refused; the filter before it stays in force.
+    pub error: Option<FilterError>,
 }
 
 /// Paths that were dropped for one viewer since it was last told, because it or its budget was too
-/// small for them.
+/// small for them: paths of the daemon, before any filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Gap {
     /// Path batches.

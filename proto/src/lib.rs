@@ -7,8 +7,8 @@
 mod convert;
 
 pub use convert::{
-    Hello, MAX_MESSAGE_BYTES, ReceivedScene, SceneAssembler, TracerEvent, ViewerEvent, WireError,
-    scene_chunks, unchanged_scene,
+    Hello, MAX_MESSAGE_BYTES, ReceivedScene, SceneAssembler, TracerEvent, ViewerEvent,
+    WantedFilter, WireError, scene_chunks, unchanged_scene,
 };
 
 /// The generated types, clients and servers of package `lvis.v1`.
@@ -43,7 +43,7 @@ pub struct ProtocolVersion {
 
 impl ProtocolVersion {
     /// What this crate speaks.
-    pub const CURRENT: Self = Self { major: 1, minor: 0 };
+    pub const CURRENT: Self = Self { major: 1, minor: 1 };
 }
 
 impl std::fmt::Display for ProtocolVersion {

@@ -14,9 +14,9 @@ use tracer_server::scene::Scene;
 use tracer_server::scene::load::load;
 
 /// Nothing here takes that long; what does hangs.
-const PATIENCE: Duration = Duration::from_mins(1);
+pub(crate) const PATIENCE: Duration = Duration::from_mins(1);
 
-fn start() -> Daemon {
+pub(crate) fn start() -> Daemon {
     let mut description = load("cornell").expect("a built-in scene").description;
     (description.width, description.height) = (40, 30);
     let scene = Arc::new(Scene::new(&description).expect("a sound scene"));
@@ -39,13 +39,14 @@ async fn watch(address: &str) -> (TracerClient<Channel>, Streaming<v1::TracerMes
         viewer_name: "test".to_owned(),
         wanted_role: Role::Observer,
         data_budget: 0,
+        filter: None,
     };
     let messages = tokio_stream::once(v1::ViewerMessage::from(ViewerEvent::Hello(hello)));
     let stream = client.watch(messages).await.expect("welcome").into_inner();
     (client, stream)
 }
 
-async fn next(stream: &mut Streaming<v1::TracerMessage>) -> Option<TracerEvent> {
+pub(crate) async fn next(stream: &mut Streaming<v1::TracerMessage>) -> Option<TracerEvent> {
     let message =
         tokio::time::timeout(PATIENCE, stream.message()).await.expect("a message in time");
     let message = message.expect("no error")?;

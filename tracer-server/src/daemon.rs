@@ -102,5 +102,5 @@ fn session_info(scene: &Scene, ensemble: &EnsembleSettings) -> SessionInfo {
         max_edges: scene.max_edges() as u32,
         role: Role::Observer,
     };
-    SessionInfo { welcome, mesh: scene.preview_mesh() }
+    SessionInfo { welcome, mesh: scene.preview_mesh(), objects: scene.objects().to_vec() }
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
+use common::Filter;
 
 use crate::command;
 
@@ -79,6 +80,10 @@ pub struct WatchArgs {
     /// HOST:PORT of a running daemon.
     #[arg(value_name = "ADDR", value_parser = address)]
     pub address: String,
+    /// Which paths to show, such as `lpe "CDS+L"` or `any in sphere(0, 1, 0, 0.5)`; see
+    /// docs/FILTERS.md.
+    #[arg(long, value_name = "TEXT", value_parser = filter)]
+    pub filter: Option<String>,
     /// One JSON object a line.
     #[arg(long)]
     pub json: bool,
@@ -105,6 +110,10 @@ pub struct BenchArgs {
     /// Size of the picture in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
     pub size: [u32; 2],
+    /// Which paths to show, such as `lpe "CDS+L"` or `any in sphere(0, 1, 0, 0.5)`; see
+    /// docs/FILTERS.md.
+    #[arg(long, value_name = "TEXT", value_parser = filter)]
+    pub filter: Option<String>,
     /// One JSON object a line.
     #[arg(long)]
     pub json: bool,
@@ -124,6 +133,14 @@ fn address(text: &str) -> Result<String, String> {
     match port {
         Some((false, Ok(_))) => Ok(text.to_owned()),
         _ => Err("write HOST:PORT, such as 127.0.0.1:50061".to_owned()),
+    }
+}
+
+/// A filter whose grammar is right; whether its names are is for the daemon to say.
+fn filter(text: &str) -> Result<String, String> {
+    match Filter::parse(text) {
+        Ok(_) => Ok(text.to_owned()),
+        Err(error) => Err(format!("\n{}", error.pointed(text))),
     }
 }
 
@@ -166,14 +183,19 @@ mod tests {
         let view = cli.expect("a screenshot").view;
         assert_eq!(view.size, [640, 360], "size");
         assert_eq!(view.wait, Some(Duration::from_millis(2500)), "seconds");
-        let cli = parse("viewer-client watch [::1]:50061 --json --count 3").expect("watch");
-        assert!(matches!(cli.action, Some(Action::Watch(w)) if w.json && w.count == Some(3)), "w");
+        let cli = parse("viewer-client watch [::1]:50061 --json --count 3 --filter edges>3")
+            .expect("watch");
+        assert!(
+            matches!(cli.action, Some(Action::Watch(w)) if w.json && w.count == Some(3) && w.filter.as_deref() == Some("edges>3")),
+            "w"
+        );
     }
 
     #[test]
     fn nonsense_is_refused() {
         for line in [
             "viewer-client nowhere",
+            "viewer-client watch 127.0.0.1:5 --filter edges",
             "viewer-client :50061",
             "viewer-client 127.0.0.1:99999",
             "viewer-client 127.0.0.1:5 --scene cornell",

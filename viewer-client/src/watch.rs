@@ -3,22 +3,23 @@
 use std::io::{self, Write as _};
 
 use anyhow::Context as _;
-use common::{Gap, PathBatch, Statistics, Welcome};
-use proto::TracerEvent;
+use common::{BatchOrigin, FilterCounts, FilterReply, Gap, PathBatch, Statistics, Welcome};
+use proto::{TracerEvent, WantedFilter};
 use serde_json::{Value, json};
 
 use crate::cli::WatchArgs;
 use crate::connection::Session;
 use crate::format;
 
-/// Prints what comes, until `--count` batches have come, the daemon ends or the reader goes away.
+/// Prints what comes, until `--count` batches with paths have come, the daemon ends or the reader goes away.
 pub fn run(args: &WatchArgs) -> anyhow::Result<()> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     runtime.block_on(watch(args))
 }
 
 async fn watch(args: &WatchArgs) -> anyhow::Result<()> {
-    let mut session = Session::open(&args.address, "Lvis watch").await?;
+    let filter = args.filter.clone().map(|text| WantedFilter { revision: 1, text });
+    let mut session = Session::open(&args.address, "Lvis watch", filter).await?;
     let mut names = Names::default();
     let mut batches = 0;
     let mut out = io::stdout();
@@ -30,7 +31,7 @@ async fn watch(args: &WatchArgs) -> anyhow::Result<()> {
                 break;
             }
         };
-        batches += u64::from(matches!(event, TracerEvent::Paths(_)));
+        batches += u64::from(matches!(&event, TracerEvent::Paths(batch) if !batch.is_empty()));
         let Some(line) = names.line(&event, args.json) else { continue };
         if let Err(error) = writeln!(out, "{line}") {
             // `watch | head` ends the reader; that is no mistake.
@@ -44,10 +45,11 @@ async fn watch(args: &WatchArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Names announced in the welcome.
+/// Names announced in the welcome and in the answer to the filter.
 #[derive(Debug, Default)]
 struct Names {
     strategies: Vec<String>,
+    conditions: Vec<String>,
 }
 
 impl Names {
@@ -58,6 +60,8 @@ impl Names {
                 self.strategies.clone_from(&welcome.strategies);
                 Some(if json { welcome_json(welcome).to_string() } else { welcome_line(welcome) })
             }
+            // A filter that wants nothing sends batches without paths; the statistics say so.
+            TracerEvent::Paths(batch) if batch.is_empty() => None,
             TracerEvent::Paths(batch) => {
                 let summary = Summary::of(batch);
                 Some(if json {
@@ -74,6 +78,10 @@ impl Names {
             } else {
                 self.statistics_line(statistics)
             }),
+            TracerEvent::FilterReply(reply) => {
+                self.conditions.clone_from(&reply.conditions);
+                Some(if json { reply_json(reply).to_string() } else { reply_line(reply) })
+            }
             TracerEvent::Film(_)
             | TracerEvent::SnapshotEnd
             | TracerEvent::Goodbye(_)
@@ -93,9 +101,10 @@ impl Names {
         let strategies: Vec<String> =
             s.strategies.iter().map(|(i, n)| format!("{} {n}", self.strategy(*i))).collect();
         format!(
-            "batch {:>8}  {:>5} paths  {:>6} new vertices  {:>6} bytes  acceptance {:.3}  {}",
+            "batch {:>8}  {:>5} of {:>5} paths  {:>6} new vertices  {:>6} bytes  acceptance {:.3}  {}",
             s.sequence,
             s.paths,
+            s.origin.seen,
             s.new_vertices,
             s.bytes,
             s.mean_acceptance,
@@ -109,6 +118,12 @@ impl Names {
         json!({
             "event": "batch",
             "sequence": s.sequence,
+            "revision": s.origin.revision,
+            "decimation": s.origin.decimation,
+            "seen": s.origin.seen,
+            "matched": s.origin.matched,
+            "seen_steps": s.origin.seen_steps,
+            "matched_steps": s.origin.matched_steps,
             "paths": s.paths,
             "new_vertices": s.new_vertices,
             "bytes": s.bytes,
@@ -128,13 +143,33 @@ impl Names {
             })
             .collect();
         format!(
-            "statistics  {} mutations  {}/s  b {:.5} +- {:.1e}  accepted: {}",
+            "statistics  {} mutations  {}/s  b {:.5} +- {:.1e}  accepted: {}{}",
             format::count(s.totals.steps as f64),
             format::count(s.mutations_per_second),
             s.normalization,
             s.normalization_error,
-            strategies.join(", ")
+            strategies.join(", "),
+            self.counts_line(&s.filter)
         )
+    }
+
+    /// What the filter saw, on lines of its own; nothing without a filter.
+    fn counts_line(&self, counts: &FilterCounts) -> String {
+        if counts.revision == 0 {
+            return String::new();
+        }
+        let mut lines = vec![format!(
+            "\nfilter  {} of {} paths match, {:.3} % +- {:.3} % of the image's energy",
+            counts.matched,
+            counts.seen,
+            100.0 * counts.energy_share,
+            100.0 * counts.energy_error
+        )];
+        for (condition, &count) in self.conditions.iter().zip(&counts.conditions) {
+            let share = format::percent(count as f64, counts.seen as f64);
+            lines.push(format!("    {share} meet  {condition}"));
+        }
+        lines.join("\n")
     }
 
     fn statistics_json(&self, s: &Statistics) -> Value {
@@ -159,8 +194,34 @@ impl Names {
             "normalization_error": s.normalization_error,
             "viewers": s.viewers,
             "strategies": strategies,
+            "filter": {
+                "revision": s.filter.revision,
+                "seen": s.filter.seen,
+                "matched": s.filter.matched,
+                "energy_share": s.filter.energy_share,
+                "energy_error": s.filter.energy_error,
+                "conditions": s.filter.conditions,
+            },
         })
     }
+}
+
+fn reply_line(reply: &FilterReply) -> String {
+    match &reply.error {
+        None => format!("filter  {}", reply.text),
+        Some(error) => format!("filter refused  {error}"),
+    }
+}
+
+fn reply_json(reply: &FilterReply) -> Value {
+    json!({
+        "event": "filter",
+        "revision": reply.revision,
+        "epoch": reply.epoch,
+        "text": reply.text,
+        "conditions": reply.conditions,
+        "error": reply.error.as_ref().map(ToString::to_string),
+    })
 }
 
 fn welcome_line(w: &Welcome) -> String {
@@ -197,6 +258,7 @@ fn gap_json(gap: Gap) -> Value {
 #[derive(Debug, PartialEq)]
 struct Summary {
     sequence: u64,
+    origin: BatchOrigin,
     paths: usize,
     new_vertices: usize,
     bytes: usize,
@@ -215,6 +277,7 @@ impl Summary {
         }
         Self {
             sequence: batch.sequence(),
+            origin: *batch.origin(),
             paths: batch.len(),
             new_vertices: batch.vertices().kind.len(),
             bytes: batch.byte_len(),

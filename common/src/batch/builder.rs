@@ -63,6 +63,11 @@ impl BatchBuilder {
         completed
     }
 
+    /// Bytes of the open batch.
+    pub fn byte_len(&self) -> usize {
+        self.batch.byte_len()
+    }
+
     /// The open batch, if it holds anything.
     pub fn finish(&mut self) -> Completed {
         self.last.clear();

@@ -1,6 +1,6 @@
 //! What columns from elsewhere must be before they are believed.
 
-use super::{BatchError, MAX_VERTICES, PathColumns, VertexColumns};
+use super::{BatchError, BatchOrigin, MAX_VERTICES, PathColumns, VertexColumns};
 use crate::{Event, VertexKind};
 
 pub(super) fn lengths(paths: &PathColumns, vertices: &VertexColumns) -> Result<(), BatchError> {
@@ -32,6 +32,21 @@ pub(super) fn lengths(paths: &PathColumns, vertices: &VertexColumns) -> Result<(
         }
     }
     Ok(())
+}
+
+pub(super) fn origin(origin: &BatchOrigin) -> Result<(), BatchError> {
+    let BatchOrigin { decimation, seen, matched, seen_steps, matched_steps, .. } = *origin;
+    let counts = |number: f64| number.is_finite() && number >= 0.0;
+    let complaint = if !counts(f64::from(decimation)) {
+        "the decimation is not a finite number of steps"
+    } else if !(counts(seen_steps) && counts(matched_steps)) {
+        "the steps are not finite numbers"
+    } else if matched > seen {
+        "more paths match than were seen"
+    } else {
+        return Ok(());
+    };
+    Err(BatchError::Origin(complaint))
 }
 
 pub(super) fn values(paths: &PathColumns, vertices: &VertexColumns) -> Result<(), BatchError> {

@@ -10,6 +10,7 @@
 mod builder;
 mod check;
 mod normal;
+mod origin;
 mod reader;
 
 use thiserror::Error;
@@ -18,6 +19,7 @@ use crate::{ChainId, Event, PathId, StrategyId, VertexKind};
 
 pub use builder::{BatchBuilder, BatchLimits, Completed};
 pub use normal::{NORMAL_SCALE, decode_normal, encode_normal};
+pub use origin::BatchOrigin;
 pub use reader::{PathReader, PathView};
 
 /// No path has more vertices than this.
@@ -118,6 +120,8 @@ pub struct VertexColumns {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathBatch {
     sequence: u64,
+    /// Apart, since batches are moved more often than anyone asks for it.
+    origin: Box<BatchOrigin>,
     paths: PathColumns,
     vertices: VertexColumns,
 }
@@ -166,6 +170,9 @@ pub enum BatchError {
         /// Index of the entry.
         index: usize,
     },
+    /// A batch that says impossible things of where it comes from.
+    #[error("the batch's origin is not possible: {0}")]
+    Origin(&'static str),
     /// A code that this version does not know.
     #[error("column `{column}` holds the unknown code {code} at entry {index}")]
     UnknownCode {
@@ -188,12 +195,40 @@ impl PathBatch {
         check::lengths(&paths, &vertices)?;
         check::values(&paths, &vertices)?;
         check::splices(&paths)?;
-        Ok(Self { sequence, paths, vertices })
+        Ok(Self { sequence, origin: Box::default(), paths, vertices })
     }
 
-    /// Grows by one from batch to batch of a daemon, so that a viewer can see a gap.
+    /// The number of the newest batch of the daemon that is behind this one; see
+    /// [`BatchOrigin::source_batches`].
     pub fn sequence(&self) -> u64 {
         self.sequence
+    }
+
+    /// What the batch was made from.
+    pub fn origin(&self) -> &BatchOrigin {
+        &self.origin
+    }
+
+    /// The same batch with another origin, which must be possible.
+    pub fn with_origin(self, origin: BatchOrigin) -> Result<Self, BatchError> {
+        check::origin(&origin)?;
+        Ok(Self { origin: Box::new(origin), ..self })
+    }
+
+    /// The same batch, which holds every record of one batch of the daemon.
+    #[must_use]
+    pub fn into_source(self) -> Self {
+        let seen = self.len() as u64;
+        let steps = self.paths.weight.iter().copied().map(f64::from).sum();
+        let origin = BatchOrigin {
+            source_batches: 1,
+            seen,
+            matched: seen,
+            seen_steps: steps,
+            matched_steps: steps,
+            ..BatchOrigin::default()
+        };
+        Self { origin: Box::new(origin), ..self }
     }
 
     /// The same batch under another sequence number.
@@ -232,6 +267,11 @@ impl PathBatch {
     /// Reads the paths in order.
     pub fn reader(&self) -> PathReader<'_> {
         PathReader::new(self)
+    }
+
+    /// What the records say besides the vertices, in order.
+    pub fn headers(&self) -> impl Iterator<Item = PathHeader> {
+        (0..self.len()).map(|i| self.header(i))
     }
 
     fn header(&self, i: usize) -> PathHeader {

@@ -83,7 +83,7 @@ impl FilterTally {
         }
     }
 
-    /// The standard error of a ratio of sums over independent chains [Cochran 1977, section 6.3]:
+    /// The standard error of a ratio of sums over independent chains [Cochran 1977, chapter 6]:
     /// steps of one chain depend on each other, those of different chains do not.
     fn error_of(&self, ratio: f64, total: f64) -> f64 {
         let chains = self.chains.len() as f64;

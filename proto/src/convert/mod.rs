@@ -8,6 +8,7 @@ mod check;
 mod column;
 mod error;
 mod film;
+mod filter;
 mod path;
 mod scene;
 mod session;
@@ -17,6 +18,7 @@ mod statistics;
 mod tests;
 
 pub use error::WireError;
+pub use filter::WantedFilter;
 pub use scene::{ReceivedScene, SceneAssembler, scene_chunks, unchanged_scene};
 pub use session::{Hello, TracerEvent, ViewerEvent};
 

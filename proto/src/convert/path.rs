@@ -1,6 +1,6 @@
 //! Path batches.
 
-use common::{PathBatch, PathColumns, VertexColumns};
+use common::{BatchOrigin, PathBatch, PathColumns, VertexColumns};
 
 use super::{WireError, check, column};
 use crate::v1;
@@ -15,6 +15,13 @@ impl From<&PathBatch> for v1::PathBatch {
             sequence: batch.sequence(),
             record_count: p.chain.len() as u32,
             vertex_count: v.kind.len() as u32,
+            revision: batch.origin().revision,
+            source_batches: batch.origin().source_batches,
+            decimation: batch.origin().decimation,
+            seen: batch.origin().seen,
+            matched: batch.origin().matched,
+            seen_steps: batch.origin().seen_steps,
+            matched_steps: batch.origin().matched_steps,
             chain: column::encode(&p.chain),
             epoch: column::encode(&p.epoch),
             step: column::encode(&p.step),
@@ -70,6 +77,15 @@ impl TryFrom<v1::PathBatch> for PathBatch {
             material: column::decode("material", &wire.material, count)?,
             primitive: column::decode("primitive", &wire.primitive, count)?,
         };
-        Ok(Self::from_columns(wire.sequence, paths, vertices)?)
+        let origin = BatchOrigin {
+            revision: wire.revision,
+            source_batches: wire.source_batches,
+            decimation: wire.decimation,
+            seen: wire.seen,
+            matched: wire.matched,
+            seen_steps: wire.seen_steps,
+            matched_steps: wire.matched_steps,
+        };
+        Ok(Self::from_columns(wire.sequence, paths, vertices)?.with_origin(origin)?)
     }
 }

@@ -1,7 +1,8 @@
 //! The two directions of a session.
 
-use common::{FilmTile, Gap, PathBatch, Role, Statistics, Welcome};
+use common::{FilmTile, FilterReply, Gap, PathBatch, Role, Statistics, Welcome};
 
+use super::filter::WantedFilter;
 use super::{WireError, check};
 use crate::{ProtocolVersion, v1};
 
@@ -16,6 +17,8 @@ pub struct Hello {
     pub wanted_role: Role,
     /// Most bytes of data a second; 0 for the default.
     pub data_budget: u64,
+    /// Which paths it would like from the beginning.
+    pub filter: Option<WantedFilter>,
 }
 
 /// What a viewer says.
@@ -25,6 +28,8 @@ pub enum ViewerEvent {
     Hello(Hello),
     /// Changes the most bytes of data a second; 0 for the default.
     SetBudget(u64),
+    /// Changes which paths are sent.
+    SetFilter(WantedFilter),
     /// Leaves, with a reason.
     Goodbye(String),
     /// Something of a later version, to be ignored.
@@ -46,6 +51,8 @@ pub enum TracerEvent {
     Gap(Gap),
     /// The snapshot after the welcome is complete.
     SnapshotEnd,
+    /// Answers a filter.
+    FilterReply(FilterReply),
     /// The tracer ends the session, with a reason.
     Goodbye(String),
     /// Something of a later version, to be ignored.
@@ -60,6 +67,7 @@ impl From<ViewerEvent> for v1::ViewerMessage {
             ViewerEvent::SetBudget(data_budget) => {
                 Some(Kind::SetBudget(v1::SetBudget { data_budget }))
             }
+            ViewerEvent::SetFilter(filter) => Some(Kind::SetFilter(filter.into())),
             ViewerEvent::Goodbye(reason) => Some(Kind::Goodbye(v1::Goodbye { reason })),
             ViewerEvent::Unknown => None,
         };
@@ -75,6 +83,7 @@ impl TryFrom<v1::ViewerMessage> for ViewerEvent {
         Ok(match wire.kind {
             Some(Kind::Hello(hello)) => Self::Hello(hello.try_into()?),
             Some(Kind::SetBudget(budget)) => Self::SetBudget(budget.data_budget),
+            Some(Kind::SetFilter(filter)) => Self::SetFilter(filter.try_into()?),
             Some(Kind::Goodbye(goodbye)) => Self::Goodbye(reason(goodbye)?),
             None => Self::Unknown,
         })
@@ -91,6 +100,7 @@ impl From<&TracerEvent> for v1::TracerMessage {
             TracerEvent::Statistics(statistics) => Some(Kind::Statistics(statistics.into())),
             TracerEvent::Gap(gap) => Some(Kind::Gap((*gap).into())),
             TracerEvent::SnapshotEnd => Some(Kind::SnapshotEnd(v1::SnapshotEnd {})),
+            TracerEvent::FilterReply(reply) => Some(Kind::FilterReply(reply.into())),
             TracerEvent::Goodbye(reason) => {
                 Some(Kind::Goodbye(v1::Goodbye { reason: check::cut(reason, check::MAX_REASON) }))
             }
@@ -112,6 +122,7 @@ impl TryFrom<v1::TracerMessage> for TracerEvent {
             Some(Kind::Statistics(statistics)) => Self::Statistics(statistics.try_into()?),
             Some(Kind::Gap(gap)) => Self::Gap(gap.into()),
             Some(Kind::SnapshotEnd(_)) => Self::SnapshotEnd,
+            Some(Kind::FilterReply(reply)) => Self::FilterReply(reply.try_into()?),
             Some(Kind::Goodbye(goodbye)) => Self::Goodbye(reason(goodbye)?),
             None => Self::Unknown,
         })
@@ -159,6 +170,7 @@ impl From<Hello> for v1::Hello {
             viewer_name: hello.viewer_name,
             wanted_role: v1::Role::from(hello.wanted_role).into(),
             data_budget: hello.data_budget,
+            filter: hello.filter.map(Into::into),
         }
     }
 }
@@ -176,6 +188,7 @@ impl TryFrom<v1::Hello> for Hello {
             viewer_name,
             wanted_role: role(wire.wanted_role),
             data_budget: wire.data_budget,
+            filter: wire.filter.map(TryInto::try_into).transpose()?,
         })
     }
 }

@@ -21,6 +21,7 @@ impl From<&Statistics> for v1::Statistics {
             paths_sent: s.paths_sent,
             paths_dropped: s.paths_dropped,
             queued_bytes: s.queued_bytes,
+            filter: Some((&s.filter).into()),
         }
     }
 }
@@ -54,6 +55,7 @@ impl TryFrom<v1::Statistics> for Statistics {
             paths_sent: wire.paths_sent,
             paths_dropped: wire.paths_dropped,
             queued_bytes: wire.queued_bytes,
+            filter: wire.filter.unwrap_or_default().try_into()?,
         })
     }
 }

@@ -1,9 +1,10 @@
 //! Round trips, and what hostile peers may send.
 
 use common::{
-    BatchBuilder, Camera, CameraPose, ChainId, ChainTotals, Event, FailureCount, FilmTile, Gap,
-    MaterialInfo, PathBatch, PathHeader, PathId, Rgb, Role, SceneFrame, SceneMesh, Statistics,
-    StrategyId, StrategyStatistics, VertexKind, VertexRecord, Welcome,
+    BatchBuilder, BatchOrigin, Camera, CameraPose, ChainId, ChainTotals, Event, FailureCount,
+    FilmTile, FilterCounts, FilterError, FilterReply, Gap, MAX_FILTER_BYTES, MaterialInfo,
+    PathBatch, PathHeader, PathId, Rgb, Role, SceneFrame, SceneMesh, Statistics, StrategyId,
+    StrategyStatistics, VertexKind, VertexRecord, Welcome,
 };
 use glam::DVec3;
 use proptest::prelude::*;
@@ -70,6 +71,16 @@ fn statistics() -> Statistics {
         paths_sent: 100,
         paths_dropped: 9,
         queued_bytes: 12,
+        filter: FilterCounts {
+            revision: 4,
+            seen: 1000,
+            matched: 10,
+            seen_steps: 32_000.0,
+            matched_steps: 400.0,
+            energy_share: 0.0125,
+            energy_error: 0.001,
+            conditions: vec![500, 20],
+        },
     }
 }
 
@@ -133,13 +144,30 @@ prop_compose! {
 
 fn any_batch() -> impl Strategy<Value = PathBatch> {
     let record = (any_header(), prop::collection::vec(any_vertex(), 2..9));
-    (prop::collection::vec(record, 1..40), any::<u64>()).prop_map(|(records, sequence)| {
+    let counts = (any::<(u32, u32)>(), 0.0..1e9_f32, any::<(u32, u32)>(), 0.0..1e12_f64);
+    let origin =
+        counts.prop_map(|((revision, source_batches), decimation, (seen, more), steps)| {
+            let (matched, seen) = (u64::from(seen), u64::from(seen) + u64::from(more));
+            let (matched_steps, seen_steps) = (steps, 3.0 * steps);
+            BatchOrigin {
+                revision,
+                source_batches,
+                decimation,
+                seen,
+                matched,
+                seen_steps,
+                matched_steps,
+            }
+        });
+    let records = (prop::collection::vec(record, 1..40), any::<u64>(), origin);
+    records.prop_map(|(records, sequence, origin)| {
         let mut builder = BatchBuilder::default();
         for (header, vertices) in &records {
             let completed = builder.push(header, vertices, None);
             assert!(completed.is_none(), "forty paths fit into one batch");
         }
-        builder.finish().expect("at least one path").with_sequence(sequence)
+        let batch = builder.finish().expect("at least one path").with_sequence(sequence);
+        batch.with_origin(origin).expect("possible")
     })
 }
 
@@ -189,6 +217,18 @@ fn every_tracer_event_survives_the_wire() {
         TracerEvent::Statistics(statistics()),
         TracerEvent::Gap(Gap { batches: 1, paths: 2, bytes: 3 }),
         TracerEvent::SnapshotEnd,
+        TracerEvent::FilterReply(FilterReply {
+            revision: 2,
+            epoch: 1,
+            text: "edges == 2".to_owned(),
+            conditions: vec!["edges == 2".to_owned()],
+            error: None,
+        }),
+        TracerEvent::FilterReply(FilterReply {
+            revision: 3,
+            error: Some(FilterError { span: 4..9, message: "expected more".to_owned() }),
+            ..FilterReply::default()
+        }),
         TracerEvent::Goodbye("over".to_owned()),
         TracerEvent::Unknown,
     ] {
@@ -203,10 +243,12 @@ fn every_viewer_event_survives_the_wire() {
         viewer_name: "a viewer".to_owned(),
         wanted_role: Role::Driver,
         data_budget: 1 << 20,
+        filter: Some(WantedFilter { revision: 1, text: "edges > 1".to_owned() }),
     };
     for event in [
         ViewerEvent::Hello(hello),
         ViewerEvent::SetBudget(9),
+        ViewerEvent::SetFilter(WantedFilter { revision: u32::MAX, text: String::new() }),
         ViewerEvent::Goodbye("over".to_owned()),
         ViewerEvent::Unknown,
     ] {
@@ -231,6 +273,44 @@ fn another_major_version_is_refused_and_both_are_named() {
     let message = Hello::try_from(hello).expect_err("version 9 is not ours").to_string();
     let ours = ProtocolVersion::CURRENT.to_string();
     assert!(message.contains("9.4") && message.contains(&ours), "names both: {message}");
+}
+
+#[test]
+fn hostile_filters_are_refused() {
+    let filter = |revision, text: &str| {
+        WantedFilter::try_from(v1::SetFilter { revision, text: text.to_owned() })
+    };
+    assert!(filter(1, &" ".repeat(MAX_FILTER_BYTES)).is_ok(), "as long as allowed");
+    assert!(filter(1, &" ".repeat(MAX_FILTER_BYTES + 1)).is_err(), "too long");
+    assert!(filter(0, "edges > 1").is_err(), "no number");
+    let reply = |edit: fn(&mut v1::FilterReply)| {
+        let mut wire = v1::FilterReply { revision: 1, ..v1::FilterReply::default() };
+        edit(&mut wire);
+        FilterReply::try_from(wire).is_err()
+    };
+    assert!(!reply(|_| {}), "an empty reply is good");
+    assert!(reply(|r| r.conditions = vec![String::new(); 65]), "too many conditions");
+    assert!(reply(|r| r.text = "x".repeat(1 << 20)), "a long text");
+    let error = |start, end| v1::FilterError { start, end, message: String::new() };
+    assert!(!reply(|r| r.error = Some(v1::FilterError::default())), "an error is good");
+    let backwards = v1::FilterReply { error: Some(error(3, 2)), ..v1::FilterReply::default() };
+    assert!(FilterReply::try_from(backwards).is_err(), "a span that ends before it starts");
+    let counts = v1::FilterCounts { energy_error: f64::NAN, ..v1::FilterCounts::default() };
+    assert!(FilterCounts::try_from(counts).is_err(), "NaN");
+}
+
+#[test]
+fn hostile_origins_are_refused() {
+    let empty = |edit: fn(&mut v1::PathBatch)| {
+        let mut wire = v1::PathBatch::default();
+        edit(&mut wire);
+        PathBatch::try_from(wire)
+    };
+    assert!(empty(|_| {}).is_ok(), "a batch without records is good");
+    assert!(empty(|b| b.decimation = f32::NAN).is_err(), "NaN");
+    assert!(empty(|b| b.decimation = -1.0).is_err(), "negative");
+    assert!(empty(|b| b.seen_steps = f64::INFINITY).is_err(), "infinite");
+    assert!(empty(|b| b.matched = 1).is_err(), "more matches than paths");
 }
 
 #[test]

@@ -47,7 +47,7 @@ pub(super) fn session_info() -> SessionInfo {
         max_edges: 8,
         role: Role::Observer,
     };
-    SessionInfo { welcome, mesh: strip(60_000, camera) }
+    SessionInfo { welcome, mesh: strip(60_000, camera), objects: Vec::new() }
 }
 
 /// A strip of triangles.
@@ -94,6 +94,7 @@ pub(super) fn hello() -> v1::Hello {
         viewer_name: "test".to_owned(),
         wanted_role: Role::Observer,
         data_budget: 1 << 30,
+        filter: None,
     })
 }
 

@@ -3,12 +3,14 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use common::{FilmTile, Gap, PathBatch, Statistics};
+use common::{FilmTile, FilterReply, Gap, PathBatch, Statistics};
 use tokio::sync::Notify;
 use tokio::sync::futures::Notified;
 use tokio::time::Instant;
 
+use super::backlog::Backlog;
 use super::budget::Budget;
+use super::population::Offer;
 use super::{HubLimits, NumberedFilm};
 
 /// A film tile holds whole rows of about this many bytes.
@@ -30,7 +32,9 @@ pub enum Delivery {
     Film(FilmTile),
     /// The snapshot is complete.
     SnapshotEnd,
-    /// A batch, shared with the other viewers.
+    /// The answer to a filter.
+    FilterReply(FilterReply),
+    /// A batch, perhaps shared with other viewers.
     Paths(Arc<PathBatch>),
     /// What was dropped since the last gap.
     Gap(Gap),
@@ -43,6 +47,12 @@ pub enum Delivery {
 pub(super) enum Taken {
     /// Something to send.
     Now(Delivery),
+    /// Statistics to send, still without what concerns this viewer's paths.
+    Statistics(Statistics),
+    /// The gap that was offered is to be sent.
+    Gap,
+    /// The batch that was offered is to be sent.
+    Paths,
     /// Rows to send, still to be converted: not under the lane's lock.
     Film(TileOrder),
     /// Nothing until the lane is filled, or until the instant when the budget allows more.
@@ -68,24 +78,26 @@ pub(super) struct Lane {
 
 #[derive(Debug)]
 struct LaneState {
-    control: VecDeque<Arc<Statistics>>,
+    control: VecDeque<Control>,
     closed: Option<String>,
     phase: Phase,
 
-    data: VecDeque<Arc<PathBatch>>,
-    data_bytes: usize,
+    backlog: Backlog,
     budget: Budget,
-    gap: Gap,
-    /// Reports the gap even though no batch gets through.
+    /// Reports a gap even though no batch gets through.
     gap_is_due: bool,
 
     film: Option<FilmProgress>,
     newer_film: Option<NumberedFilm>,
     /// Whose turn it is when both film and paths wait.
     film_was_last: bool,
+}
 
-    paths_sent: u64,
-    paths_dropped: u64,
+/// What a viewer must get.
+#[derive(Debug)]
+enum Control {
+    Statistics(Arc<Statistics>),
+    FilterReply(FilterReply),
 }
 
 /// How far the viewer is into the session.
@@ -113,16 +125,12 @@ impl Lane {
             control: VecDeque::new(),
             closed: None,
             phase: Phase::Live,
-            data: VecDeque::new(),
-            data_bytes: 0,
+            backlog: Backlog::default(),
             budget: Budget::new(or_default(budget, limits), now),
-            gap: Gap::default(),
             gap_is_due: false,
             film: None,
             newer_film: None,
             film_was_last: false,
-            paths_sent: 0,
-            paths_dropped: 0,
         };
         Self { session, limits, state: Mutex::new(state), wake: Notify::new() }
     }
@@ -144,7 +152,7 @@ impl Lane {
         film: Option<NumberedFilm>,
     ) {
         let mut state = self.state();
-        state.control.extend(statistics);
+        state.control.extend(statistics.map(Control::Statistics));
         state.film = film.map(|film| FilmProgress { film, next_row: 0 });
         state.phase = if state.film.is_some() { Phase::SnapshotFilm } else { Phase::SnapshotEnd };
     }
@@ -160,32 +168,41 @@ impl Lane {
     pub(super) fn tick(&self, statistics: Option<&Arc<Statistics>>) {
         let mut state = self.state();
         state.gap_is_due = true;
-        if state.control.len() < self.limits.control_messages {
-            state.control.extend(statistics.map(Arc::clone));
-        } else if state.closed.is_none() {
-            let reason = format!(
-                "the viewer read too slowly: {} control messages wait for it",
-                state.control.len()
-            );
-            state.close(reason);
+        if let Some(statistics) = statistics {
+            state.push_control(Control::Statistics(Arc::clone(statistics)), self.limits);
         }
         drop(state);
         self.wake.notify_one();
     }
 
-    /// Puts a batch into the data lane, where the oldest make room for it.
-    pub(super) fn push_paths(&self, batch: Arc<PathBatch>) {
-        let mut state = self.state();
-        let budgeted = state.budget.bytes_per_second() * LANE_SECONDS;
-        let limit = (budgeted as usize).max(MIN_LANE_BYTES).min(self.limits.lane_bytes);
-        state.push_paths(batch, limit);
-        drop(state);
+    /// Puts the answer to a filter into the control lane.
+    pub(super) fn push_reply(&self, reply: FilterReply) {
+        self.state().push_control(Control::FilterReply(reply), self.limits);
         self.wake.notify_one();
     }
 
-    /// Adds to the gap what was lost before it reached the lanes.
+    /// Puts a batch into the backlog, where the oldest make room for it.
+    pub(super) fn push_paths(&self, batch: Arc<PathBatch>) {
+        self.state().backlog.push(batch, self.limits.lane_bytes);
+        self.wake.notify_one();
+    }
+
+    /// Takes what came first from the backlog: what is missing, and the batch after it, if any.
+    pub(super) fn take_backlog(&self) -> Option<(Gap, Option<Arc<PathBatch>>)> {
+        self.state().backlog.pop()
+    }
+
+    /// Bytes in the backlog, and most bytes that should wait after it was filtered.
+    pub(super) fn backlog(&self) -> (usize, usize) {
+        let state = self.state();
+        let budgeted = state.budget.bytes_per_second() * LANE_SECONDS;
+        let limit = (budgeted as usize).max(MIN_LANE_BYTES).min(self.limits.lane_bytes);
+        (state.backlog.byte_len(), limit)
+    }
+
+    /// Notes what was lost before it reached the lanes.
     pub(super) fn push_lost(&self, lost: Gap) {
-        self.state().add_to_gap(lost);
+        self.state().backlog.push_lost(lost);
     }
 
     /// Puts a snapshot of the film into the data lane; the newest waits for the one on its way.
@@ -200,9 +217,9 @@ impl Lane {
         self.wake.notify_one();
     }
 
-    /// Takes what is to be sent next.
-    pub(super) fn take(&self, viewers: u32, now: Instant) -> Taken {
-        self.state().take(viewers, now)
+    /// Decides what is to be sent next; `offer` says what there is of paths.
+    pub(super) fn take(&self, viewers: u32, offer: Offer, now: Instant) -> Taken {
+        self.state().take(viewers, offer, now)
     }
 
     fn state(&self) -> MutexGuard<'_, LaneState> {
@@ -215,18 +232,30 @@ fn or_default(budget: u64, limits: HubLimits) -> u64 {
 }
 
 impl LaneState {
-    fn take(&mut self, viewers: u32, now: Instant) -> Taken {
+    /// Puts in what must not be lost, and closes the lanes where there is no more room for it.
+    fn push_control(&mut self, control: Control, limits: HubLimits) {
+        if self.control.len() < limits.control_messages {
+            self.control.push_back(control);
+        } else if self.closed.is_none() {
+            let waiting = self.control.len();
+            self.close(format!(
+                "the viewer read too slowly: {waiting} control messages wait for it"
+            ));
+        }
+    }
+
+    fn take(&mut self, viewers: u32, offer: Offer, now: Instant) -> Taken {
         if let Some(reason) = &self.closed {
             return Taken::Now(Delivery::Closed(reason.clone()));
         }
-        if let Some(statistics) = self.control.pop_front() {
-            return Taken::Now(Delivery::Statistics(Statistics {
-                viewers,
-                paths_sent: self.paths_sent,
-                paths_dropped: self.paths_dropped,
-                queued_bytes: self.data_bytes as u64,
-                ..Statistics::clone(&statistics)
-            }));
+        match self.control.pop_front() {
+            Some(Control::Statistics(statistics)) => {
+                return Taken::Statistics(Statistics { viewers, ..Statistics::clone(&statistics) });
+            }
+            Some(Control::FilterReply(reply)) => {
+                return Taken::Now(Delivery::FilterReply(reply));
+            }
+            None => {}
         }
         match self.phase {
             // The budget is ignored: a viewer is to have the snapshot within a second.
@@ -241,33 +270,31 @@ impl LaneState {
                 self.phase = Phase::Live;
                 Taken::Now(Delivery::SnapshotEnd)
             }
-            Phase::Live => self.take_data(now),
+            Phase::Live => self.take_data(offer, now),
         }
     }
 
-    fn take_data(&mut self, now: Instant) -> Taken {
+    fn take_data(&mut self, offer: Offer, now: Instant) -> Taken {
         let wait = self.budget.wait(now);
-        let batch_is_next = wait.is_none() && !self.data.is_empty();
-        if (batch_is_next || self.gap_is_due) && self.gap != Gap::default() {
+        let batch_is_next = wait.is_none() && offer.batch.is_some();
+        if offer.gap && (batch_is_next || self.gap_is_due) {
             self.gap_is_due = false;
-            return Taken::Now(Delivery::Gap(std::mem::take(&mut self.gap)));
+            return Taken::Gap;
         }
-        if wait.is_some() && (self.film.is_some() || !self.data.is_empty()) {
+        if wait.is_some() && (self.film.is_some() || offer.batch.is_some()) {
             return Taken::Later(wait);
         }
-        let prefers_paths = self.film_was_last && !self.data.is_empty();
+        let prefers_paths = self.film_was_last && offer.batch.is_some();
         if !prefers_paths && let Some(order) = self.take_rows() {
             self.film_was_last = true;
             self.budget.spend(order.byte_len());
             return Taken::Film(order);
         }
-        match self.data.pop_front() {
-            Some(batch) => {
+        match offer.batch {
+            Some(bytes) => {
                 self.film_was_last = false;
-                self.data_bytes -= batch.byte_len();
-                self.budget.spend(batch.byte_len());
-                self.paths_sent += batch.len() as u64;
-                Taken::Now(Delivery::Paths(batch))
+                self.budget.spend(bytes);
+                Taken::Paths
             }
             None => Taken::Later(None),
         }
@@ -289,33 +316,11 @@ impl LaneState {
         Some(order)
     }
 
-    fn push_paths(&mut self, batch: Arc<PathBatch>, limit: usize) {
-        self.data_bytes += batch.byte_len();
-        self.data.push_back(batch);
-        while self.data_bytes > limit && self.data.len() > 1 {
-            let Some(oldest) = self.data.pop_front() else { break };
-            self.data_bytes -= oldest.byte_len();
-            self.add_to_gap(Gap {
-                batches: 1,
-                paths: oldest.len() as u64,
-                bytes: oldest.byte_len() as u64,
-            });
-        }
-    }
-
-    fn add_to_gap(&mut self, more: Gap) {
-        self.gap.batches += more.batches;
-        self.gap.paths += more.paths;
-        self.gap.bytes += more.bytes;
-        self.paths_dropped += more.paths;
-    }
-
     /// Ends the session, and lets go of what will not be sent any more.
     fn close(&mut self, reason: String) {
         self.closed = Some(reason);
         self.control.clear();
-        self.data.clear();
-        self.data_bytes = 0;
+        self.backlog = Backlog::default();
         self.film = None;
         self.newer_film = None;
     }

@@ -6,16 +6,22 @@
 //! goes first, and a viewer that lets it fill is disconnected; the data lane is lossy and bounded in
 //! bytes, drops its oldest batch, and reports the loss as a [`common::Gap`].
 //!
+//! What a viewer's filter wants is picked out in the viewer's own task, from the data lane: batches
+//! wait there as they are, shared by all viewers, until the viewer has room for more.
+//!
 //! No lock that a viewer can hold is ever taken by a producer.
 
+mod backlog;
 mod budget;
 mod lane;
+mod population;
 mod pump;
+mod sampler;
 
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use common::{FilmFrame, Gap, PathBatch, Statistics};
+use common::{CompiledFilter, FilmFrame, FilterReply, Gap, PathBatch, Statistics};
 use thiserror::Error;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, timeout_at};
@@ -24,6 +30,7 @@ pub use lane::Delivery;
 pub use pump::Pump;
 
 use lane::{Lane, Taken};
+use population::Population;
 
 /// What bounds the hub's queues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -188,7 +195,8 @@ impl Hub {
         registry.lanes.push(Arc::clone(&lane));
         self.shared.viewers.store(registry.lanes.len(), Ordering::Relaxed);
         drop(registry);
-        Ok(Subscription { shared: Arc::clone(&self.shared), lane })
+        let population = Mutex::new(Population::new(lane.session()));
+        Ok(Subscription { shared: Arc::clone(&self.shared), lane, population })
     }
 }
 
@@ -219,6 +227,8 @@ impl Lost {
 pub struct Subscription {
     shared: Arc<Shared>,
     lane: Arc<Lane>,
+    /// Touched by the viewer's own task only.
+    population: Mutex<Population>,
 }
 
 impl Subscription {
@@ -232,22 +242,79 @@ impl Subscription {
         self.lane.set_budget(budget, Instant::now());
     }
 
+    /// Puts a filter into force, for all paths that are looked at from now on, and replies to it. Each
+    /// batch names its filter, and no path is lost or seen twice by the change.
+    pub fn set_filter(&self, revision: u32, filter: Arc<CompiledFilter>) {
+        let (_, limit) = self.lane.backlog();
+        let reply = FilterReply {
+            revision,
+            text: filter.text().to_owned(),
+            conditions: filter.condition_texts().to_vec(),
+            ..FilterReply::default()
+        };
+        self.population().set_filter(revision, filter, limit);
+        self.reply(reply);
+    }
+
+    /// Answers a filter without putting it into force.
+    pub fn reply(&self, reply: FilterReply) {
+        let epoch = self.shared.registry().statistics.as_ref().map_or(0, |news| news.epoch);
+        self.lane.push_reply(FilterReply { epoch, ..reply });
+    }
+
     /// Waits for what goes to the viewer next. Nothing is lost when the wait is abandoned.
     pub async fn next(&self) -> Delivery {
         loop {
             // Holds a permit if the lane was filled since, so that no wake-up is missed.
             let filled = self.lane.filled();
-            let viewers = self.shared.viewers.load(Ordering::Relaxed);
-            match self.lane.take(viewers as u32, Instant::now()) {
-                Taken::Now(delivery) => return delivery,
-                Taken::Film(order) => return Delivery::Film(order.tile()),
-                Taken::Later(None) => filled.await,
+            let wait = match self.look(Instant::now()) {
+                Ok(delivery) => return delivery,
+                Err(wait) => wait,
+            };
+            match wait {
+                None => filled.await,
                 // Whether time or news ended the wait, the lane is looked at again.
-                Taken::Later(Some(instant)) => {
-                    drop(timeout_at(instant, filled).await);
-                }
+                Some(instant) => drop(timeout_at(instant, filled).await),
             }
         }
+    }
+
+    /// What goes to the viewer now, or when to look again unless the lane is filled before.
+    fn look(&self, now: Instant) -> Result<Delivery, Option<Instant>> {
+        let viewers = self.shared.viewers.load(Ordering::Relaxed) as u32;
+        let mut population = self.population();
+        let (_, limit) = self.lane.backlog();
+        while let Some((gap, batch)) = self.lane.take_backlog() {
+            population.miss(gap, limit);
+            if let Some(batch) = batch {
+                population.see(&batch, limit, now);
+            }
+        }
+        population.tend(limit, now);
+        match self.lane.take(viewers, population.offer(), now) {
+            Taken::Now(delivery) => Ok(delivery),
+            Taken::Film(order) => Ok(Delivery::Film(order.tile())),
+            Taken::Statistics(statistics) => {
+                let (paths_sent, paths_dropped) = population.traffic();
+                let (backlog, _) = self.lane.backlog();
+                let queued_bytes = (backlog + population.byte_len()) as u64;
+                let filter = population.counts();
+                Ok(Delivery::Statistics(Statistics {
+                    paths_sent,
+                    paths_dropped,
+                    queued_bytes,
+                    filter,
+                    ..statistics
+                }))
+            }
+            Taken::Gap => population.take_gap().map(Delivery::Gap).ok_or(None),
+            Taken::Paths => population.take_batch().map(Delivery::Paths).ok_or(None),
+            Taken::Later(wait) => Err(wait.into_iter().chain(population.deadline()).min()),
+        }
+    }
+
+    fn population(&self) -> MutexGuard<'_, Population> {
+        self.population.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -259,5 +326,7 @@ impl Drop for Subscription {
     }
 }
 
+#[cfg(test)]
+mod selection;
 #[cfg(test)]
 mod tests;

@@ -76,7 +76,7 @@ impl Pump {
     fn distribute(&mut self, batch: PathBatch) {
         self.shared.waiting_bytes.fetch_sub(batch.byte_len(), Ordering::Relaxed);
         self.report_lost();
-        let batch = Arc::new(batch.with_sequence(self.path_sequence));
+        let batch = Arc::new(batch.into_source().with_sequence(self.path_sequence));
         self.path_sequence += 1;
         for lane in &self.shared.registry().lanes {
             lane.push_paths(Arc::clone(&batch));

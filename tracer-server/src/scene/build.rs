@@ -1,6 +1,6 @@
 //! From a description to a world that can be traced.
 
-use common::{Camera, CameraError, Rgb, SceneFrame};
+use common::{Camera, CameraError, FilterObject, Rgb, SceneFrame};
 use glam::DVec3;
 use thiserror::Error;
 
@@ -65,8 +65,10 @@ impl Scene {
         }
 
         let mut warnings = Vec::new();
-        let (triangles, mut materials) = gather_triangles(description, frame, &mut warnings)?;
-        let balls = gather_balls(description, frame, &mut materials)?;
+        let mut objects = Vec::new();
+        let (triangles, mut materials) =
+            gather_triangles(description, frame, &mut objects, &mut warnings)?;
+        let balls = gather_balls(description, frame, &mut objects, &mut materials)?;
         if materials.is_empty() {
             return Err(SceneError::Empty);
         }
@@ -117,6 +119,7 @@ impl Scene {
             surfaces,
             emitters,
             lamp_names: description.lights.iter().map(|light| light.name.clone()).collect(),
+            objects,
             warnings,
         })
     }
@@ -166,12 +169,14 @@ fn exponent(x: f64) -> i32 {
 fn gather_triangles(
     description: &SceneDescription,
     frame: SceneFrame,
+    objects: &mut Vec<FilterObject>,
     warnings: &mut Vec<String>,
 ) -> Result<(Vec<Triangle>, Vec<u16>), SceneError> {
     let count = description.materials.len();
     let (mut triangles, mut materials) = (Vec::new(), Vec::new());
     let mut degenerate = 0_usize;
     for mesh in &description.meshes {
+        let first = materials.len() as u32;
         for (indices, &material) in mesh.triangles.iter().zip(&mesh.materials) {
             if usize::from(material) >= count {
                 let shape = format!("mesh `{}`", mesh.name);
@@ -188,6 +193,8 @@ fn gather_triangles(
                 None => degenerate += 1,
             }
         }
+        let primitives = first..materials.len() as u32;
+        objects.push(FilterObject { name: mesh.name.clone(), primitives });
     }
     if degenerate > 0 {
         warnings.push(format!("{degenerate} triangles without area were left out"));
@@ -198,6 +205,7 @@ fn gather_triangles(
 fn gather_balls(
     description: &SceneDescription,
     frame: SceneFrame,
+    objects: &mut Vec<FilterObject>,
     materials: &mut Vec<u16>,
 ) -> Result<Vec<Ball>, SceneError> {
     let count = description.materials.len();
@@ -210,7 +218,10 @@ fn gather_balls(
         }
         if sphere.radius > 0.0 {
             balls.push(Ball::new(frame.to_scene(sphere.centre), sphere.radius * frame.scale));
+            let primitive = materials.len() as u32;
             materials.push(sphere.material);
+            let primitives = primitive..primitive + 1;
+            objects.push(FilterObject { name: sphere.name.clone(), primitives });
         }
     }
     Ok(balls)

@@ -37,7 +37,7 @@ mod tracer;
 mod validate;
 mod viewpoint;
 
-use common::{Camera, Rgb, SceneFrame};
+use common::{Camera, FilterObject, Rgb, SceneFrame};
 use glam::DVec3;
 
 use crate::bsdf::Bsdf;
@@ -82,6 +82,7 @@ pub struct Scene {
     emitters: Emitters,
     /// Of the lights without a surface.
     lamp_names: Vec<String>,
+    objects: Vec<FilterObject>,
     warnings: Vec<String>,
 }
 
@@ -114,6 +115,11 @@ impl Scene {
     /// How scene units relate to the units of the file.
     pub fn frame(&self) -> SceneFrame {
         self.frame
+    }
+
+    /// The meshes and spheres by name, each with its primitives.
+    pub fn objects(&self) -> &[FilterObject] {
+        &self.objects
     }
 
     /// The render camera, in scene units.

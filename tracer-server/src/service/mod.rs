@@ -13,7 +13,7 @@ use std::pin::Pin;
 use std::sync::Arc;
 use std::time::Duration;
 
-use common::{Role, SceneMesh, Welcome};
+use common::{FilterObject, FilterScene, Role, SceneMesh, Welcome};
 use proto::v1::tracer_server::{Tracer, TracerServer};
 use proto::{FILE_DESCRIPTOR_SET, MAX_MESSAGE_BYTES, v1};
 use thiserror::Error;
@@ -43,6 +43,9 @@ const PING_TIMEOUT: Duration = Duration::from_secs(20);
 const MAX_CONNECTIONS: usize = 128;
 /// Streams that one connection may have open.
 const STREAMS_PER_CONNECTION: u32 = 32;
+/// A viewer's filters are read no faster than this: compiling one takes time, which a viewer that asks
+/// for many takes from itself only.
+const FILTER_INTERVAL: Duration = Duration::from_millis(15);
 /// What viewers are told when the daemon ends.
 const SHUTTING_DOWN: &str = "the daemon is shutting down";
 
@@ -53,6 +56,20 @@ pub struct SessionInfo {
     pub welcome: Welcome,
     /// The scene for drawing.
     pub mesh: SceneMesh,
+    /// The objects that filters may name.
+    pub objects: Vec<FilterObject>,
+}
+
+impl SessionInfo {
+    /// What filters may name.
+    fn filter_scene(&self) -> FilterScene {
+        FilterScene {
+            frame: self.welcome.frame,
+            materials: self.mesh.materials.iter().map(|material| material.name.clone()).collect(),
+            strategies: self.welcome.strategies.clone(),
+            objects: self.objects.clone(),
+        }
+    }
 }
 
 /// Why the service ended, if not on request.
@@ -85,7 +102,9 @@ pub async fn serve(
         .register_encoded_file_descriptor_set(FILE_DESCRIPTOR_SET)
         .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
         .build_v1()?;
-    let service = TracerService { hub, info, tasks: tasks.clone(), shutdown: shutdown.clone() };
+    let filter_scene = Arc::new(info.filter_scene());
+    let (task_list, token) = (tasks.clone(), shutdown.clone());
+    let service = TracerService { hub, info, filter_scene, tasks: task_list, shutdown: token };
     let tracer = TracerServer::new(service)
         .max_decoding_message_size(MAX_REQUEST_BYTES)
         .max_encoding_message_size(MAX_MESSAGE_BYTES);
@@ -121,6 +140,7 @@ pub async fn serve(
 struct TracerService {
     hub: Hub,
     info: Arc<SessionInfo>,
+    filter_scene: Arc<FilterScene>,
     tasks: TaskTracker,
     shutdown: CancellationToken,
 }
@@ -142,10 +162,14 @@ impl Tracer for TracerService {
             hello = session::handshake(&mut inbound) => hello?,
             () = self.shutdown.cancelled() => return Err(Status::unavailable(SHUTTING_DOWN)),
         };
+        let filter = session::first_filter(&hello, &self.filter_scene)?;
         let subscription = self
             .hub
             .subscribe(hello.data_budget)
             .map_err(|full| Status::resource_exhausted(full.to_string()))?;
+        if let Some((revision, filter)) = filter {
+            subscription.set_filter(revision, filter);
+        }
         // Steering needs a lease that this version does not give away yet.
         let welcome = Welcome {
             session: subscription.session(),
@@ -153,7 +177,8 @@ impl Tracer for TracerService {
             ..self.info.welcome.clone()
         };
         let (sender, outbound) = outbound::channel();
-        let session = Session::new(hello, subscription, self.shutdown.clone());
+        let filter_scene = Arc::clone(&self.filter_scene);
+        let session = Session::new(hello, subscription, filter_scene, self.shutdown.clone());
         self.tasks.spawn(session.run(welcome, inbound, sender));
         Ok(Response::new(outbound))
     }

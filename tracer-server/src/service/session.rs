@@ -1,14 +1,17 @@
 //! One viewer, from hello to goodbye.
 
-use common::Welcome;
+use std::sync::Arc;
+
+use common::{CompiledFilter, Filter, FilterError, FilterReply, FilterScene, Welcome};
 use proto::v1::{self, TracerMessage, ViewerMessage, tracer_message::Kind};
-use proto::{Hello, TracerEvent, ViewerEvent, WireError};
+use proto::{Hello, TracerEvent, ViewerEvent, WantedFilter, WireError};
 use tokio::sync::mpsc;
+use tokio::time::{Instant, sleep_until};
 use tokio_util::sync::CancellationToken;
 use tonic::{Status, Streaming};
 
 use super::outbound::Sender;
-use super::{HELLO_TIMEOUT, SHUTTING_DOWN};
+use super::{FILTER_INTERVAL, HELLO_TIMEOUT, SHUTTING_DOWN};
 use crate::hub::{Delivery, Subscription};
 
 /// Waits for the hello, which must come first and soon.
@@ -25,6 +28,24 @@ pub(super) async fn handshake(inbound: &mut Streaming<ViewerMessage>) -> Result<
         ViewerEvent::Hello(hello) => Ok(hello),
         _ => Err(Status::invalid_argument("the first message must be `hello`")),
     }
+}
+
+/// The filter that a viewer asks for in its hello, with its number.
+pub(super) fn first_filter(
+    hello: &Hello,
+    scene: &FilterScene,
+) -> Result<Option<(u32, Arc<CompiledFilter>)>, Status> {
+    let Some(WantedFilter { revision, text }) = &hello.filter else { return Ok(None) };
+    match understand(text, scene) {
+        Ok(filter) => Ok(Some((*revision, Arc::new(filter)))),
+        Err(error) => {
+            Err(Status::invalid_argument(format!("the filter:\n{}", error.pointed(text))))
+        }
+    }
+}
+
+fn understand(text: &str, scene: &FilterScene) -> Result<CompiledFilter, FilterError> {
+    Filter::parse(text)?.compile(scene)
 }
 
 /// The status that a malformed message is answered with.
@@ -56,6 +77,8 @@ enum End {
 enum Heard {
     /// Nothing that ends the session.
     Fine,
+    /// Something that was done, but is too much work to be asked for without end.
+    Work,
     /// It will say no more, but may go on reading.
     Silent,
     /// The session is over.
@@ -67,6 +90,7 @@ enum Heard {
 pub(super) struct Session {
     hello: Hello,
     subscription: Subscription,
+    filter_scene: Arc<FilterScene>,
     shutdown: CancellationToken,
 }
 
@@ -75,9 +99,10 @@ impl Session {
     pub(super) fn new(
         hello: Hello,
         subscription: Subscription,
+        filter_scene: Arc<FilterScene>,
         shutdown: CancellationToken,
     ) -> Self {
-        Self { hello, subscription, shutdown }
+        Self { hello, subscription, filter_scene, shutdown }
     }
 
     /// Talks to the viewer until one of them leaves.
@@ -123,13 +148,19 @@ impl Session {
             return End::Left("it hung up".to_owned());
         }
         let mut listens = true;
+        let mut listens_from = Instant::now();
         loop {
+            let next_message = async {
+                sleep_until(listens_from).await;
+                inbound.message().await
+            };
             tokio::select! {
                 biased;
                 () = self.shutdown.cancelled() => return End::Dismissed(SHUTTING_DOWN.to_owned()),
                 () = messages.closed() => return End::Left("it hung up".to_owned()),
-                message = inbound.message(), if listens => match self.hear(message) {
+                message = next_message, if listens => match self.hear(message) {
                     Heard::Fine => {}
+                    Heard::Work => listens_from = Instant::now() + FILTER_INTERVAL,
                     Heard::Silent => listens = false,
                     Heard::Over(end) => return end,
                 },
@@ -149,6 +180,10 @@ impl Session {
                 self.subscription.set_budget(budget);
                 Heard::Fine
             }
+            Ok(ViewerEvent::SetFilter(wanted)) => {
+                self.set_filter(wanted);
+                Heard::Work
+            }
             Ok(ViewerEvent::Unknown) => Heard::Fine,
             Ok(ViewerEvent::Goodbye(reason)) => {
                 let reason = reason.chars().filter(|c| !c.is_control()).collect();
@@ -159,6 +194,17 @@ impl Session {
                 Heard::Over(End::Refused(status))
             }
             Err(status) => Heard::Over(End::Refused(status)),
+        }
+    }
+
+    fn set_filter(&self, wanted: WantedFilter) {
+        let WantedFilter { revision, text } = wanted;
+        match understand(&text, &self.filter_scene) {
+            Ok(filter) => self.subscription.set_filter(revision, Arc::new(filter)),
+            Err(error) => {
+                let error = Some(error);
+                self.subscription.reply(FilterReply { revision, error, ..FilterReply::default() });
+            }
         }
     }
 
@@ -174,6 +220,7 @@ impl Session {
             Delivery::Film(tile) => Kind::FilmTile((&tile).into()),
             Delivery::Statistics(statistics) => Kind::Statistics((&statistics).into()),
             Delivery::Gap(gap) => Kind::Gap(gap.into()),
+            Delivery::FilterReply(reply) => Kind::FilterReply((&reply).into()),
             Delivery::SnapshotEnd => Kind::SnapshotEnd(v1::SnapshotEnd {}),
         };
         room.send(TracerMessage { kind: Some(kind) });

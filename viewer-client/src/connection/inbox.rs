@@ -59,7 +59,10 @@ impl Delivery {
             TracerEvent::Film(tile) => self.push_tile(tile),
             TracerEvent::Statistics(statistics) => self.statistics = Some(statistics),
             TracerEvent::Gap(gap) => self.lose(gap),
-            TracerEvent::SnapshotEnd | TracerEvent::Goodbye(_) | TracerEvent::Unknown => {}
+            TracerEvent::FilterReply(_)
+            | TracerEvent::SnapshotEnd
+            | TracerEvent::Goodbye(_)
+            | TracerEvent::Unknown => {}
         }
     }
 

@@ -107,7 +107,7 @@ impl Keeper {
             self.set_state(LinkState::Connecting);
             let ended = tokio::select! {
                 () = shutdown.cancelled() => return,
-                opened = Session::open(&self.address, "Lvis viewer") => match opened {
+                opened = Session::open(&self.address, "Lvis viewer", None) => match opened {
                     Ok(session) => self.listen(session, &mut failures).await,
                     Err(error) => Some(error),
                 },

@@ -6,7 +6,7 @@ use common::Role;
 use proto::v1::tracer_client::TracerClient;
 use proto::{
     Hello, MAX_MESSAGE_BYTES, ProtocolVersion, ReceivedScene, SceneAssembler, TracerEvent,
-    ViewerEvent, WireError, v1,
+    ViewerEvent, WantedFilter, WireError, v1,
 };
 use thiserror::Error;
 use tokio::sync::mpsc;
@@ -68,8 +68,13 @@ pub struct Session {
 }
 
 impl Session {
-    /// Connects to `address` (HOST:PORT) and says hello.
-    pub async fn open(address: &str, viewer_name: &str) -> Result<Self, SessionError> {
+    /// Connects to `address` (HOST:PORT) and says hello. With a `filter`, only paths that it wants
+    /// come.
+    pub async fn open(
+        address: &str,
+        viewer_name: &str,
+        filter: Option<WantedFilter>,
+    ) -> Result<Self, SessionError> {
         let bad = |_| SessionError::BadAddress(address.to_owned());
         let endpoint = Endpoint::from_shared(format!("http://{address}"))
             .map_err(bad)?
@@ -88,6 +93,7 @@ impl Session {
             viewer_name: viewer_name.to_owned(),
             wanted_role: Role::Observer,
             data_budget: 0,
+            filter,
         });
         // The outbox is empty and its other end is held here.
         let sent = outgoing.try_send(hello.into());
