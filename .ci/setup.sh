@@ -10,6 +10,9 @@ readonly RUN_PACKAGES=(
 # What driving the window from a test needs besides.
 readonly TEST_PACKAGES=(xvfb xdotool imagemagick)
 readonly TYPOS_VERSION=1.52.0
+# What docs/examples/watch.py runs with.
+readonly GRPCIO_VERSION=1.85.1
+readonly NUMPY_VERSION=2.4.6
 
 target_dir=${CARGO_TARGET_DIR:-$PWD/target}
 
@@ -120,5 +123,21 @@ find_typos() {
 install_typos() {
   mkdir -p "$1" && python3 -m venv "$1" &&
     "$1/bin/pip" install --disable-pip-version-check "typos==$TYPOS_VERSION" ||
+    { rm -rf "$1"; return 1; }
+}
+
+# Puts the Python that has what docs/examples needs into $example_python, or leaves it empty.
+find_example_python() {
+  local home=$target_dir/tools/python-grpcio-$GRPCIO_VERSION
+  example_python=
+  if [[ -x $home/bin/python ]] || install_example_python "$home" >/dev/null 2>&1; then
+    example_python=$home/bin/python
+  fi
+}
+
+install_example_python() {
+  mkdir -p "$1" && python3 -m venv "$1" &&
+    "$1/bin/pip" install --disable-pip-version-check "grpcio==$GRPCIO_VERSION" \
+      "grpcio-tools==$GRPCIO_VERSION" "numpy==$NUMPY_VERSION" ||
     { rm -rf "$1"; return 1; }
 }

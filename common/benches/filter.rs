@@ -35,6 +35,7 @@ fn main() -> io::Result<()> {
     let scene = FilterScene {
         frame: SceneFrame { centre: DVec3::ZERO, scale: 1.0 },
         materials: ["wall", "glass", "lamp"].map(str::to_owned).to_vec(),
+        background: None,
         strategies: Vec::new(),
         objects: Vec::new(),
     };

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{FilterError, Name};
-use crate::SceneFrame;
+use crate::{MaterialInfo, SceneFrame};
 
 /// Two names of at least this Jaro-Winkler similarity may have been mixed up.
 const SIMILAR: f64 = 0.75;
@@ -15,8 +15,11 @@ const MAX_LISTED: usize = 12;
 pub struct FilterScene {
     /// How scene units relate to those of the file.
     pub frame: SceneFrame,
-    /// Names of the materials, in the order of their indices.
+    /// Names of the materials and, after them, of the lights without a surface, in the order of their
+    /// indices.
     pub materials: Vec<String>,
+    /// Index of the environment among them.
+    pub background: Option<u16>,
     /// Names of the mutation strategies, in the order of their indices.
     pub strategies: Vec<String>,
     /// The objects that have names.
@@ -33,6 +36,12 @@ pub struct FilterObject {
 }
 
 impl FilterScene {
+    /// The index of the environment among the materials that travel with a scene.
+    pub fn background_among(materials: &[MaterialInfo]) -> Option<u16> {
+        let index = materials.iter().position(|material| material.model == "environment")?;
+        u16::try_from(index).ok()
+    }
+
     /// How many materials there are.
     pub(super) fn material_count(&self) -> usize {
         self.materials.len()

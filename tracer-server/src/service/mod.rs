@@ -63,9 +63,11 @@ pub struct SessionInfo {
 impl SessionInfo {
     /// What filters may name.
     fn filter_scene(&self) -> FilterScene {
+        let materials = &self.mesh.materials;
         FilterScene {
             frame: self.welcome.frame,
-            materials: self.mesh.materials.iter().map(|material| material.name.clone()).collect(),
+            materials: materials.iter().map(|material| material.name.clone()).collect(),
+            background: FilterScene::background_among(materials),
             strategies: self.welcome.strategies.clone(),
             objects: self.objects.clone(),
         }

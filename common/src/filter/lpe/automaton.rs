@@ -23,15 +23,19 @@ pub(in crate::filter) struct LightPathAutomaton {
     direction: Direction,
     /// Number of the label of each material, 0 for none that is named.
     labels: Vec<u8>,
+    /// The material of the environment.
+    background: Option<u16>,
 }
 
 impl LightPathAutomaton {
-    /// Compiles `node`; `None` when the table would be too large.
+    /// Compiles `node`; `None` when the table would be too large. `labels` holds the number of the
+    /// label of each material, up to `label_count`.
     pub(super) fn new(
         node: &Node,
         label_count: usize,
         direction: Direction,
         labels: Vec<u8>,
+        background: Option<u16>,
     ) -> Option<Self> {
         let limit = Some(MAX_BYTES);
         let nfa = thompson::Config::new()
@@ -49,7 +53,7 @@ impl LightPathAutomaton {
             .determinize_size_limit(limit);
         let dfa = dense::Builder::new().configure(config).build_from_nfa(&nfa).ok()?;
         let start = dfa.start_state(&start::Config::new().anchored(Anchored::Yes)).ok()?;
-        Some(Self { dfa, start, direction, labels })
+        Some(Self { dfa, start, direction, labels, background })
     }
 
     /// True when the whole path, from the light to the lens, fits the expression.
@@ -63,7 +67,8 @@ impl LightPathAutomaton {
             };
             let material = usize::from(vertices[j].material);
             let label = self.labels.get(material).copied().unwrap_or(0);
-            state = self.dfa.next_state(state, symbol(base_of(vertices, j), usize::from(label)));
+            let base = base_of(vertices, j, self.background);
+            state = self.dfa.next_state(state, symbol(base, usize::from(label)));
             if self.dfa.is_dead_state(state) {
                 return false;
             }

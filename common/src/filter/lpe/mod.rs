@@ -102,8 +102,13 @@ impl LightPathExpression {
                 }
             }
         }
-        let automaton =
-            LightPathAutomaton::new(&self.node, self.labels.len(), self.direction, labels);
+        let automaton = LightPathAutomaton::new(
+            &self.node,
+            self.labels.len(),
+            self.direction,
+            labels,
+            scene.background,
+        );
         automaton.ok_or_else(|| {
             let message = "the light path expression needs too large a table; use smaller \
                            repetitions, and `*` instead of large numbers";

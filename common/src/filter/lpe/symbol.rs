@@ -4,6 +4,8 @@ use glam::Vec3;
 
 use crate::{Event, VertexKind, VertexRecord, decode_normal};
 
+/// The primitive of a vertex that lies on no surface.
+const NO_PRIMITIVE: u32 = u32::MAX;
 /// Events without their label.
 pub(super) const BASES: usize = 12;
 /// Labels that one expression may name; all symbols must fit into a byte.
@@ -90,12 +92,14 @@ pub(super) fn symbol(base: usize, label: usize) -> u8 {
     (label * BASES + base) as u8
 }
 
-/// The index of the event at vertex `i` of a path.
-pub(super) fn base_of(path: &[VertexRecord], i: usize) -> usize {
+/// The index of the event at vertex `i` of a path, under an environment called `background`.
+pub(super) fn base_of(path: &[VertexRecord], i: usize, background: Option<u16>) -> usize {
     let vertex = &path[i];
     let bit = match vertex.kind {
         VertexKind::Eye => bit::CAMERA,
-        VertexKind::Light => bit::EMITTER,
+        VertexKind::Light if vertex.primitive != NO_PRIMITIVE => bit::EMITTER,
+        VertexKind::Light if background == Some(vertex.material) => bit::BACKGROUND,
+        VertexKind::Light => bit::OTHER_LIGHT,
         VertexKind::Diffuse | VertexKind::Specular => match vertex.event {
             Event::Reflect => bit::REFLECT_SINGULAR,
             Event::Transmit => bit::TRANSMIT_SINGULAR,

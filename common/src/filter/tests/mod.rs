@@ -14,7 +14,8 @@ fn scene() -> FilterScene {
     let strings = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
     FilterScene {
         frame: SceneFrame { centre: DVec3::new(1.0, 2.0, 3.0), scale: 4.0 },
-        materials: strings(&["wall", "glass", "lamp", "wall"]),
+        materials: strings(&["wall", "glass", "lamp", "wall", "spot", "sky"]),
+        background: Some(5),
         strategies: strings(&["bidirectional", "lens", "lens subpath"]),
         objects: vec![
             FilterObject { name: "table".to_owned(), primitives: 0..10 },
@@ -31,16 +32,19 @@ fn compiled(text: &str) -> CompiledFilter {
 /// A vertex at a point of the file.
 fn vertex(kind: VertexKind, event: Event, point: [f64; 3], material: u16) -> VertexRecord {
     let position = scene().frame.to_scene(DVec3::from_array(point)).as_vec3().to_array();
-    VertexRecord { position, normal: [0, 0], kind, event, material, primitive: 0 }
+    let primitive = if material < 4 { 0 } else { u32::MAX };
+    VertexRecord { position, normal: [0, 0], kind, event, material, primitive }
 }
 
-/// A path with one vertex a letter, from the light: `L`, `E`, diffuse `D`, glossy `G`, mirror `S`,
-/// glass `T`.
-/// Vertex `i` lies at `(i, 0, 0)` in the file; glass is material 1, the lamp 2, all else wall.
+/// A path with one vertex a letter, from the light.
+///
+/// Lamp `L`, spot `P`, sky `B`, camera `E`, diffuse `D`, glossy `G`, mirror `S`, glass `T`. Vertex `i` lies at `(i, 0, 0)` in the file; glass is material 1, the lamp 2, all else wall.
 fn path(letters: &str) -> Vec<VertexRecord> {
     let record = |(i, letter)| {
         let (kind, event, material) = match letter {
             'L' => (VertexKind::Light, Event::End, 2),
+            'P' => (VertexKind::Light, Event::End, 4),
+            'B' => (VertexKind::Light, Event::End, 5),
             'E' => (VertexKind::Eye, Event::End, 0),
             'S' => (VertexKind::Specular, Event::Reflect, 0),
             'G' => (VertexKind::Diffuse, Event::Glossy, 0),
