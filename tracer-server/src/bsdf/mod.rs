@@ -8,6 +8,7 @@ mod dielectric;
 mod fresnel;
 mod ggx;
 mod lambert;
+mod local;
 mod mirror;
 mod plastic;
 mod rough_dielectric;
@@ -25,6 +26,7 @@ pub use dielectric::Dielectric;
 pub use fresnel::Fresnel;
 pub use ggx::{Ggx, SMOOTH};
 pub use lambert::Lambert;
+pub use local::Local;
 pub use mirror::Mirror;
 pub use plastic::{Plastic, deepened};
 pub use rough_dielectric::RoughDielectric;
@@ -36,7 +38,7 @@ pub use rough_plastic::RoughPlastic;
 /// that depends only on how the vertex was made. With `f` the scattering function and `w_l`, `w_e`
 /// the directions to the neighbours on the light and on the eye side:
 ///
-/// - `color * connection = f(w_l, w_e)` (zero for a Dirac event),
+/// - `color * connection = f(w_l, w_e)` (zero for a Dirac event; [`Local`] adds a factor),
 /// - `color * light_weight = f |cos w_e| / light_pdf`: made by a walk from the light,
 /// - `color * eye_weight = f |cos w_l| / eye_pdf`: made by a walk from the eye.
 ///
@@ -59,7 +61,7 @@ pub struct Scattering {
 }
 
 /// What a scattering model must provide. All directions are unit vectors that point away from the
-/// surface; `n` is the unit geometric normal on the front side.
+/// surface; `n` is the unit normal on the front side.
 pub trait Scatter {
     /// Makes of uniform numbers an event (of the first) and the direction the walk goes on (of the
     /// other two), given the direction `w` it came from. `None` when the walk is absorbed.
@@ -108,6 +110,22 @@ impl Bsdf {
     /// True when some of its events are Dirac ones.
     pub fn has_dirac_lobe(&self) -> bool {
         matches!(self, Self::Mirror(_) | Self::Dielectric(_) | Self::Plastic(_))
+    }
+
+    /// The model with another colour of its diffuse part, or with other facets: what a texture
+    /// tells at a point.
+    #[must_use]
+    pub fn painted(&self, color: Option<Rgb>, facets: Option<Ggx>) -> Self {
+        let mut painted = *self;
+        match (&mut painted, color, facets) {
+            (Self::Lambert(m), Some(color), _) => m.reflectance = color,
+            (Self::Plastic(m), Some(color), _) => m.diffuse = color,
+            (Self::RoughPlastic(m), Some(color), _) => m.diffuse = color,
+            (Self::RoughConductor(m), _, Some(facets)) => m.facets = facets,
+            (Self::RoughDielectric(m), _, Some(facets)) => m.facets = facets,
+            _ => {}
+        }
+        painted
     }
 
     /// A word or two for tables.

@@ -93,6 +93,15 @@ impl Inventory {
         if features.spheres {
             present.push("analytic spheres: a second hierarchy is searched for exact spheres");
         }
+        if features.shading_normals {
+            present.push("shading normals: walks from the light carry adjoint factors");
+        }
+        if features.textures {
+            present.push("textures: colour or roughness varies over surfaces");
+        }
+        if features.one_sided {
+            present.push("one-sided surfaces: black on their back");
+        }
         let told = loaded.warnings.iter().map(ToString::to_string);
         Self {
             name: description.name.clone(),
@@ -227,7 +236,7 @@ mod tests {
         let light = &inventory.lights[0];
         assert!((light.area - 24.0).abs() < 1e-12, "six sides of four: {}", light.area);
         assert!((light.power - PI * 12.0).abs() < 1e-9, "radiance one half: {}", light.power);
-        assert!(inventory.features.is_empty() && inventory.switched_off.len() == 2);
+        assert!(inventory.features.is_empty() && inventory.switched_off.len() == 5);
     }
 
     #[test]
@@ -237,6 +246,6 @@ mod tests {
         let inventory = Inventory::new(&loaded, &scene);
         let glass = inventory.materials.iter().find(|row| row.model == "dielectric");
         assert_eq!(glass.map(|row| (row.eta, row.shapes)), Some((Some(1.5), 1)));
-        assert!(inventory.switched_off.is_empty(), "{:?}", inventory.switched_off);
+        assert_eq!(inventory.switched_off.len(), 3, "{:?}", inventory.switched_off);
     }
 }

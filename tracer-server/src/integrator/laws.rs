@@ -8,7 +8,8 @@ use super::{BidirectionalTracer, PathTracer};
 use crate::chain::{Ensemble, EnsembleSettings};
 use crate::film::Film;
 use crate::scene::fixtures::{
-    Fixture, GLASS, diffuse_room, every_light, lambert, specular_room, wall_in_a_pane,
+    Fixture, GLASS, bumpy_room, coated_room, diffuse_room, every_light, lambert, specular_room,
+    wall_in_a_pane,
 };
 use crate::scene::load::load;
 use crate::scene::{BsdfDescription, Glow, Scene, builtin};
@@ -90,6 +91,16 @@ fn integrators_agree_on_a_diffuse_room() {
 #[test]
 fn integrators_agree_on_a_room_with_glass_and_mirror() {
     assert_agreement("specular", specular_room());
+}
+
+#[test]
+fn integrators_agree_on_coats_and_rough_surfaces() {
+    assert_agreement("coated", coated_room());
+}
+
+#[test]
+fn integrators_agree_on_shading_normals() {
+    assert_agreement("bumpy", bumpy_room());
 }
 
 #[test]

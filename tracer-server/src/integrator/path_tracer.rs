@@ -123,7 +123,8 @@ fn radiance(scene: &Tracer<'_>, aim: &Aim, rng: &mut Rng) -> Rgb {
         }
         let back = -direction;
         let Ok(onward) = scatter(scene, &mut next, back, rng.array()) else { break };
-        let Some(s) = bsdf.evaluate(next.normal, onward, back, next.event) else { break };
+        let local = scene.local(&next.anchor(), next.material);
+        let Some(s) = local.evaluate(onward, back, next.event) else { break };
         throughput *= s.color * s.eye_weight;
         pdf = if next.event.is_specular() { f64::INFINITY } else { s.eye_pdf };
         direction = onward;
@@ -171,9 +172,9 @@ fn sample_light(scene: &Tracer<'_>, at: &Vertex, back: DVec3, u: [f64; 3]) -> Rg
         (false, true) => 1.0 / distance_squared,
         (false, false) => -light.normal.dot(to_light) / distance_squared,
     };
-    let bsdf = scene.bsdf(at.material);
-    let open = bsdf.connectable();
-    let Some(s) = open.and_then(|event| bsdf.evaluate(at.normal, to_light, back, event)) else {
+    let local = scene.local(&at.anchor(), at.material);
+    let open = local.bsdf().connectable();
+    let Some(s) = open.and_then(|event| local.evaluate(to_light, back, event)) else {
         return Rgb::BLACK;
     };
     if !(solid_angle > 0.0) || !scene.visible(&from, &at.anchor()) {

@@ -5,7 +5,7 @@ use common::Event;
 use glam::{DVec2, DVec3};
 
 use super::{MixtureBasis, Mutation, Tuning};
-use crate::bsdf::Scatter as _;
+use crate::bsdf::{Local, Scatter as _};
 use crate::math::Rng;
 use crate::path::{
     Aim, Draft, Failure, Path, Splice, Vertex, extend, open_for_connection, scatter,
@@ -54,18 +54,38 @@ pub struct Fresh {
     pub stopped_before: f64,
 }
 
+/// The Dirac events that may send on a walk that arrives at a connectable vertex from `back`, with
+/// their directions and probabilities.
+fn sent_on<'a>(
+    local: &'a Local<'_>,
+    back: DVec3,
+) -> impl Iterator<Item = (Event, DVec3, f64)> + 'a {
+    let possible = local.bsdf().has_dirac_lobe();
+    let events = [Event::Reflect, Event::Transmit].into_iter().filter(move |_| possible);
+    events.filter_map(move |event| {
+        let onward = local.follow(back, event)?;
+        Some((event, onward, local.evaluate(onward, back, event)?.eye_pdf))
+    })
+}
+
+/// Draws whether a coat sends the walk on.
+fn send_on(scene: &Tracer<'_>, at: &Vertex, back: DVec3, rng: &mut Rng) -> Option<(Event, DVec3)> {
+    let local = scene.local(&at.anchor(), at.material);
+    if !local.bsdf().has_dirac_lobe() {
+        return None;
+    }
+    let mut u = rng.uniform();
+    let chosen = sent_on(&local, back).find(|&(.., probability)| {
+        u -= probability;
+        u < 0.0
+    });
+    chosen.map(|(event, onward, _)| (event, onward))
+}
+
 /// Probability that a walk that arrives at `at` from `back` is not sent on by a Dirac event.
 fn stopping(scene: &Tracer<'_>, at: &Vertex, back: DVec3) -> f64 {
-    let bsdf = scene.bsdf(at.material);
-    if !bsdf.has_dirac_lobe() {
-        return 1.0;
-    }
-    let probability = |event: Event| {
-        let onward = bsdf.follow(at.normal, back, event)?;
-        Some(bsdf.evaluate(at.normal, onward, back, event)?.eye_pdf)
-    };
-    let sent_on = [Event::Reflect, Event::Transmit].into_iter().filter_map(probability);
-    1.0 - sent_on.sum::<f64>()
+    let local = scene.local(&at.anchor(), at.material);
+    1.0 - sent_on(&local, back).map(|(.., probability)| probability).sum::<f64>()
 }
 
 impl Mutation for LensSubpath {
@@ -110,19 +130,17 @@ impl Mutation for LensSubpath {
             if at.is_lamp() {
                 return Err(Failure::LeftScene);
             }
-            let bsdf = scene.bsdf(at.material);
-            let stops = bsdf.connectable().is_some();
-            if !stops || bsdf.has_dirac_lobe() {
-                let onward = scatter(scene, &mut at, -direction, rng.array())?;
-                if at.event.is_specular() {
-                    draft.eye.push(at);
-                    direction = onward;
-                    continue;
-                }
+            if scene.bsdf(at.material).connectable().is_none() {
+                direction = scatter(scene, &mut at, -direction, rng.array())?;
+            } else if let Some((event, onward)) = send_on(scene, &at, -direction, rng) {
+                at.set_event(event);
+                direction = onward;
+            } else {
+                open_for_connection(scene, &mut at)?;
+                draft.eye.push(at);
+                break;
             }
-            open_for_connection(scene, &mut at)?;
             draft.eye.push(at);
-            break;
         }
         let stopped = stopping(scene, &at, -direction);
         let stopped_before = stopping(scene, &x.vertices()[d], x.edges()[d].direction);

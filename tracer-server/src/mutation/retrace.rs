@@ -5,7 +5,6 @@ use std::f64::consts::TAU;
 use common::Camera;
 use glam::{DVec2, DVec3};
 
-use crate::bsdf::Scatter as _;
 use crate::math::{Frame, Rng, log_uniform};
 use crate::path::{
     Draft, Failure, Path, Splice, Vertex, end_on_light, extend, open_for_connection,
@@ -68,8 +67,8 @@ pub(super) fn repeat(
     if at.is_lamp() {
         return Err(Failure::LeftScene);
     }
-    let bsdf = scene.bsdf(at.material);
-    let onward = bsdf.follow(at.normal, -direction, old.event).ok_or(Failure::KindChanged)?;
+    let local = scene.local(&at.anchor(), at.material);
+    let onward = local.follow(-direction, old.event).ok_or(Failure::KindChanged)?;
     at.set_event(old.event);
     Ok(onward)
 }

@@ -4,7 +4,6 @@ use common::{Rgb, VertexKind};
 use glam::{DVec2, DVec3};
 
 use super::{Edge, Failure, NO_SCATTERING, Path, Vertex, lens_vertex};
-use crate::bsdf::Scatter as _;
 use crate::scene::{Emission, Tracer};
 
 /// How a path is made of an older one: its ends are kept, what lies between is replaced.
@@ -162,8 +161,8 @@ impl Path {
         let to_light = -self.edges[j - 1].direction;
         let to_eye = self.edges[j].direction;
         scene
-            .bsdf(vertex.material)
-            .evaluate(vertex.normal, to_light, to_eye, vertex.event)
+            .local(&vertex.anchor(), vertex.material)
+            .evaluate(to_light, to_eye, vertex.event)
             .ok_or(Failure::ZeroContribution)
     }
 

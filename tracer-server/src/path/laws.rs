@@ -6,10 +6,10 @@ use common::Rgb;
 use glam::DVec3;
 use tests::chi_square_test;
 
-use super::{Aim, BidirectionalSampler, Path, emit, light_vertex};
+use super::{Aim, BidirectionalSampler, Path, Vertex, emit, light_vertex};
 use crate::bsdf::Bsdf;
 use crate::math::{Rng, Stream};
-use crate::scene::fixtures::{Fixture, diffuse_room, every_light, specular_room};
+use crate::scene::fixtures::{Fixture, bumpy_room, diffuse_room, every_light, specular_room};
 use crate::scene::{Glow, Tracer};
 
 /// Paths of bidirectional samples, one from each sample that has any.
@@ -92,8 +92,14 @@ fn start(scene: &Tracer<'_>, path: &Path, fixture: &Fixture) -> Start {
     }
 }
 
+/// The normal that a surface is shaded by.
+pub(super) fn shading(scene: &Tracer<'_>, at: &Vertex) -> DVec3 {
+    scene.local(&at.anchor(), at.material).shading()
+}
+
 /// Luminance of `f` with respect to area measure (solid angle at an infinite start), factor by
-/// factor from the vertices.
+/// factor from the vertices. Edges have geometric cosines at their light end and shading cosines at
+/// their eye end.
 fn area_contribution(scene: &Tracer<'_>, path: &Path, start: &Start) -> f64 {
     let v = path.vertices();
     let k = path.edge_count();
@@ -103,7 +109,7 @@ fn area_contribution(scene: &Tracer<'_>, path: &Path, start: &Start) -> f64 {
         let span = v[j + 1].position - v[j].position;
         let (r2, w) = (span.length_squared(), span.normalize());
         let at_lens = j + 1 == k;
-        let far = if at_lens { 1.0 } else { v[j + 1].normal.dot(w).abs() };
+        let far = if at_lens { 1.0 } else { shading(scene, &v[j + 1]).dot(w).abs() };
         scalar *= if j == 0 { far } else { v[j].normal.dot(w).abs() * far / r2 };
         if at_lens {
             let cosine = -v[k].normal.dot(w);
@@ -130,7 +136,7 @@ fn area_density(scene: &Tracer<'_>, path: &Path, light: usize, start: &Start) ->
     let cosine_sampled = |from: usize, to: usize| {
         let span = v[to].position - v[from].position;
         let (r2, w) = (span.length_squared(), span.normalize());
-        let out = v[from].normal.dot(w).abs() / PI;
+        let out = shading(scene, &v[from]).dot(w).abs() / PI;
         if to == 0 && path.is_lit_from_afar() {
             out
         } else {
@@ -165,8 +171,8 @@ fn area_density(scene: &Tracer<'_>, path: &Path, light: usize, start: &Start) ->
 
 #[test]
 fn all_splits_tell_one_contribution() {
-    let room = std::iter::once(("surface", diffuse_room()));
-    for (name, fixture) in room.chain(every_light()) {
+    let rooms = [("surface", diffuse_room()), ("shading normals", bumpy_room())];
+    for (name, fixture) in rooms.into_iter().chain(every_light()) {
         let scene = fixture.build();
         let scene = Tracer::new(&scene);
         let mut compared = 0;

@@ -225,3 +225,5 @@ impl Path {
 
 #[cfg(test)]
 mod laws;
+#[cfg(test)]
+mod shading_laws;

@@ -4,7 +4,6 @@ use arrayvec::ArrayVec;
 
 use super::numbers::ROW;
 use super::{MAX_VERTICES, Path, Strand};
-use crate::bsdf::Scatter as _;
 use crate::math::Rng;
 use crate::scene::Tracer;
 
@@ -48,8 +47,8 @@ impl Tape {
         for j in 1..count.saturating_sub(1) {
             let (back, onward) = (-x.edges()[j - 1].direction, x.edges()[j].direction);
             let at = &x.vertices()[j];
-            let bsdf = scene.bsdf(at.material);
-            let [event, u, v] = bsdf.invert(at.normal, back, onward, at.event, rng);
+            let local = scene.local(&at.anchor(), at.material);
+            let [event, u, v] = local.invert(back, onward, at.event, rng);
             self.light.push([event, u, v, 0.0]);
         }
         Some(())
@@ -66,8 +65,8 @@ impl Tape {
         for j in (k - count + 1..k).rev() {
             let (back, onward) = (x.edges()[j].direction, -x.edges()[j - 1].direction);
             let at = &x.vertices()[j];
-            let bsdf = scene.bsdf(at.material);
-            let [event, u, v] = bsdf.invert(at.normal, back, onward, at.event, rng);
+            let local = scene.local(&at.anchor(), at.material);
+            let [event, u, v] = local.invert(back, onward, at.event, rng);
             self.eye.push([event, u, v, 0.0]);
         }
     }

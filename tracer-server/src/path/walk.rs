@@ -4,7 +4,6 @@ use common::{Event, VertexKind};
 use glam::{DVec2, DVec3};
 
 use super::{Failure, Numbers, Strand, Vertex, Vertices};
-use crate::bsdf::Scatter as _;
 use crate::scene::{NO_PRIMITIVE, Tracer};
 
 /// Where a walk from the lens begins: the film point, and the vertex on the lens.
@@ -106,8 +105,8 @@ pub fn scatter(
     if at.is_lamp() {
         return Err(Failure::LeftScene);
     }
-    let bsdf = scene.bsdf(at.material);
-    let (direction, event) = bsdf.sample(at.normal, back, u).ok_or(Failure::ZeroContribution)?;
+    let local = scene.local(&at.anchor(), at.material);
+    let (direction, event) = local.sample(back, u).ok_or(Failure::ZeroContribution)?;
     at.set_event(event);
     Ok(direction)
 }

@@ -1,7 +1,8 @@
 //! From the parameters of a material to the model that scatters.
 
 use super::SurfaceMaterial;
-use super::description::{BsdfDescription, Material, NumberInput, SceneDescription};
+use super::description::{BsdfDescription, ColorInput, Material, NumberInput, SceneDescription};
+use super::paint::Paint;
 use crate::bsdf::{
     Bsdf, Dielectric, Fresnel, Ggx, Lambert, Mirror, Plastic, RoughConductor, RoughDielectric,
     RoughPlastic, SMOOTH, deepened,
@@ -20,8 +21,36 @@ pub(super) fn surface(
     SurfaceMaterial {
         name: material.name.clone(),
         bsdf: model(description, material.bsdf),
+        paint: paint(material.bsdf),
+        one_sided: !material.two_sided && !is_transparent(material.bsdf),
         emission: material.emission * emission_factor,
     }
+}
+
+fn is_transparent(bsdf: BsdfDescription) -> bool {
+    matches!(bsdf, BsdfDescription::Dielectric { .. } | BsdfDescription::RoughDielectric { .. })
+}
+
+/// The textures that a material reads, if any.
+fn paint(bsdf: BsdfDescription) -> Option<Paint> {
+    let (color, roughness) = match bsdf {
+        BsdfDescription::Lambert { reflectance } => (Some(reflectance), None),
+        BsdfDescription::Plastic { diffuse, .. } => (Some(diffuse), None),
+        BsdfDescription::Conductor { roughness, .. }
+        | BsdfDescription::RoughDielectric { roughness, .. } => (None, Some(roughness)),
+        BsdfDescription::Mirror { .. } | BsdfDescription::Dielectric { .. } => (None, None),
+    };
+    let color = color.filter(|input| matches!(input, ColorInput::Texture { .. }));
+    let roughness = roughness.filter(|input| matches!(input, NumberInput::Texture { .. }));
+    let coat = match bsdf {
+        BsdfDescription::Plastic {
+            fresnel: Fresnel::Dielectric { eta, .. },
+            nonlinear: true,
+            ..
+        } => Some(eta),
+        _ => None,
+    };
+    (color.is_some() || roughness.is_some()).then_some(Paint { color, roughness, coat })
 }
 
 /// True below the limit; a texture is rough everywhere, so that the kind of an event does not

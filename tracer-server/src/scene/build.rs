@@ -6,9 +6,11 @@ use thiserror::Error;
 
 use super::accel::{Accel, Anchor};
 use super::appearance::surface;
+use super::corners::Corners;
 use super::description::{Glow, SceneDescription};
 use super::emitter::Emitters;
 use super::lamp::{Bounds, Cone, Lamp};
+use super::paint::Map;
 use super::sky::Sky;
 use super::surface::{Ball, NO_PRIMITIVE, Triangle};
 use super::{MAX_EDGES, NO_EMITTER, Primitive, Scene, SceneFeatures, SurfaceMaterial, hash};
@@ -66,7 +68,7 @@ impl Scene {
 
         let mut warnings = Vec::new();
         let mut objects = Vec::new();
-        let (triangles, mut materials) =
+        let (triangles, mut materials, mut corners) =
             gather_triangles(description, frame, &mut objects, &mut warnings)?;
         let balls = gather_balls(description, frame, &mut objects, &mut materials)?;
         if materials.is_empty() {
@@ -104,8 +106,13 @@ impl Scene {
         let mut used = materials.clone();
         used.sort_unstable();
         used.dedup();
-        let used: Vec<_> = used.into_iter().map(|m| &surfaces[usize::from(m)].bsdf).collect();
-        let features = SceneFeatures::of(&used, spheres, &emitters, &camera);
+        let used: Vec<_> = used.into_iter().map(|m| &surfaces[usize::from(m)]).collect();
+        let features =
+            SceneFeatures::of(&used, spheres, corners.has_normals(), (&emitters, &camera));
+        if !features.textures {
+            corners.drop_texcoords();
+        }
+        let maps = description.textures.iter().map(Map::new).collect();
         Ok(Self {
             name: description.name.clone(),
             hash: hash::digest(description),
@@ -117,6 +124,8 @@ impl Scene {
             accel,
             primitives,
             surfaces,
+            corners,
+            maps,
             emitters,
             lamp_names: description.lights.iter().map(|light| light.name.clone()).collect(),
             objects,
@@ -171,13 +180,15 @@ fn gather_triangles(
     frame: SceneFrame,
     objects: &mut Vec<FilterObject>,
     warnings: &mut Vec<String>,
-) -> Result<(Vec<Triangle>, Vec<u16>), SceneError> {
+) -> Result<(Vec<Triangle>, Vec<u16>, Corners), SceneError> {
     let count = description.materials.len();
     let (mut triangles, mut materials) = (Vec::new(), Vec::new());
+    let mut corners = Corners::default();
     let mut degenerate = 0_usize;
     for mesh in &description.meshes {
         let first = materials.len() as u32;
-        for (indices, &material) in mesh.triangles.iter().zip(&mesh.materials) {
+        let listed = mesh.triangles.iter().zip(&mesh.materials).enumerate();
+        for (index, (indices, &material)) in listed {
             if usize::from(material) >= count {
                 let shape = format!("mesh `{}`", mesh.name);
                 let index = usize::from(material);
@@ -187,6 +198,7 @@ fn gather_triangles(
             let corner = |i: u32| frame.to_scene(mesh.positions[i as usize]).as_vec3().as_dvec3();
             match Triangle::new(indices.map(corner)) {
                 Some(triangle) => {
+                    corners.push(mesh, index, &triangle, triangles.len());
                     triangles.push(triangle);
                     materials.push(material);
                 }
@@ -199,7 +211,7 @@ fn gather_triangles(
     if degenerate > 0 {
         warnings.push(format!("{degenerate} triangles without area were left out"));
     }
-    Ok((triangles, materials))
+    Ok((triangles, materials, corners))
 }
 
 fn gather_balls(

@@ -3,8 +3,8 @@
 use common::Camera;
 use serde::Serialize;
 
+use super::SurfaceMaterial;
 use super::emitter::Emitters;
-use crate::bsdf::Bsdf;
 
 /// What the transport code may have to deal with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -17,6 +17,12 @@ pub struct SceneFeatures {
     pub specular: bool,
     /// Some shape is an analytic sphere.
     pub spheres: bool,
+    /// Some triangle is shaded by other normals than its own.
+    pub shading_normals: bool,
+    /// Some reachable material reads a texture.
+    pub textures: bool,
+    /// Some reachable material is black on its back.
+    pub one_sided: bool,
     /// A ray that leaves the scene meets an environment.
     pub environment: bool,
     /// A walk from the eye can hit some light: a surface or the environment.
@@ -26,17 +32,30 @@ pub struct SceneFeatures {
 }
 
 impl SceneFeatures {
-    /// Looks through what is traced: the models of all surfaces, by material, the number of analytic
-    /// spheres, the lights and the camera.
-    pub(super) fn of(used: &[&Bsdf], spheres: usize, lights: &Emitters, camera: &Camera) -> Self {
+    /// Looks through what is traced: the materials of all surfaces, the number of analytic spheres,
+    /// whether any triangle has shading normals, and the lights and the camera.
+    pub(super) fn of(
+        used: &[&SurfaceMaterial],
+        spheres: usize,
+        shading_normals: bool,
+        (lights, camera): (&Emitters, &Camera),
+    ) -> Self {
         let environment = lights.sky().is_some();
         Self {
-            specular: used.iter().any(|bsdf| bsdf.has_dirac_lobe()),
+            specular: used.iter().any(|surface| surface.bsdf.has_dirac_lobe()),
             spheres: spheres > 0,
+            shading_normals,
+            textures: used.iter().any(|surface| surface.paint.is_some()),
+            one_sided: used.iter().any(|surface| surface.one_sided),
             environment,
             hittable: environment || !lights.list().is_empty(),
             aperture: camera.has_aperture(),
         }
+    }
+
+    /// True when a point scatters as its material alone says.
+    pub(super) fn is_plain(self) -> bool {
+        !(self.shading_normals || self.textures || self.one_sided)
     }
 
     /// What the absent features switch off, in words, for the log and for people.
@@ -58,6 +77,15 @@ impl SceneFeatures {
         }
         if !self.aperture {
             off.push("no aperture: the lens is a point and never moves");
+        }
+        if !self.shading_normals {
+            off.push("no shading normals: the adjoint factors of walks from the light are 1");
+        }
+        if !self.textures {
+            off.push("no textures: no texture coordinates are kept");
+        }
+        if !self.one_sided {
+            off.push("no one-sided surface: no side is tested");
         }
         off
     }

@@ -1,7 +1,9 @@
 //! Small scenes for the laws, built in code.
 
+use std::f64::consts::{PI, TAU};
+
 use common::{CameraPose, Rgb};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec3, Vec3Swizzles as _};
 
 use super::{
     BsdfDescription, ColorInput, Glow, LightDescription, Material, Mesh, Scene, SceneDescription,
@@ -218,6 +220,47 @@ pub(crate) fn coated_room() -> Fixture {
         .quad(BLACK, Rgb::new(12.0, 9.0, 6.0), [-0.3, 0.9, -0.3], [0.6, 0., 0.], [0., 0., 0.5])
         .sphere(frosted, Rgb::BLACK, [-0.45, -0.6, -0.1], 0.35)
         .sphere(steel, Rgb::BLACK, [0.45, -0.55, -0.4], 0.4)
+}
+
+/// The same room with a coarse ball and a floor whose shading normals are far from the geometric
+/// ones.
+pub(crate) fn bumpy_room() -> Fixture {
+    let mut fixture = diffuse_room();
+    let material = fixture.material(WHITE, Rgb::BLACK);
+    let (rings, segments) = (6_u32, 9_u32);
+    let point = |ring: u32, segment: u32| {
+        let theta = PI * f64::from(ring) / f64::from(rings);
+        let phi = TAU * f64::from(segment) / f64::from(segments);
+        DVec3::new(theta.sin() * phi.cos(), theta.cos(), theta.sin() * phi.sin())
+    };
+    let mut ball = Mesh { name: "ball".to_owned(), ..Mesh::default() };
+    let mut corner = |direction: DVec3| {
+        ball.positions.push(DVec3::new(0.1, -0.35, -0.2) + 0.55 * direction);
+        (ball.positions.len() - 1) as u32
+    };
+    let mut faces = Vec::new();
+    for (ring, segment) in (0..rings).flat_map(|r| (0..segments).map(move |s| (r, s))) {
+        let (a, b) = (point(ring, segment), point(ring, segment + 1));
+        let (c, d) = (point(ring + 1, segment), point(ring + 1, segment + 1));
+        if ring > 0 {
+            faces.push([a, b, c]);
+        }
+        if ring + 1 < rings {
+            faces.push([b, d, c]);
+        }
+    }
+    let bump = |n: DVec3| (n + 0.5 * (7.0 * n.zxy()).map(f64::sin)).as_vec3();
+    for face in faces {
+        ball.triangles.push(face.map(&mut corner));
+        ball.normals.push(face.map(bump));
+        ball.materials.push(material);
+    }
+    fixture.description.meshes.push(ball);
+    let floor = &mut fixture.description.meshes[2];
+    let tilted = |x: f32, z: f32| Vec3::new(x, 1.0, z);
+    let corners = [tilted(-0.7, 0.0), tilted(0.0, 0.8), tilted(0.9, 0.0), tilted(0.0, -0.6)];
+    floor.normals = floor.triangles.iter().map(|t| t.map(|i| corners[i as usize])).collect();
+    fixture
 }
 
 /// A high-contrast floor under a wide lamp, seen through a small glass ball before the camera.

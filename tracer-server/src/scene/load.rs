@@ -120,7 +120,7 @@ fn read_obj(path: &Path) -> Result<Read, LoadError> {
         height: view.height,
         max_edges: DEFAULT_MAX_EDGES,
         materials: scene.materials,
-        textures: Vec::new(),
+        textures: scene.textures,
         meshes: scene.meshes,
         spheres: Vec::new(),
         lights: Vec::new(),

@@ -1,5 +1,7 @@
 //! Materials and textures as their author wrote them.
 
+use std::sync::Arc;
+
 use common::Rgb;
 
 use crate::bsdf::Fresnel;
@@ -129,13 +131,13 @@ pub struct Texture {
     /// Height in texels.
     pub height: u32,
     /// Codes of red, green and blue, row by row from the top.
-    pub texels: Vec<[u8; 3]>,
+    pub texels: Arc<[[u8; 3]]>,
     /// What the codes mean.
     pub coding: Coding,
 }
 
 /// How the 8-bit codes of a texture stand for numbers in [0, 1].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Coding {
     /// Colours by the sRGB curve (IEC 61966-2-1).
     Srgb,
@@ -160,7 +162,7 @@ impl Texture {
     pub fn mean(&self) -> Rgb {
         // Counting codes first makes the sum exact and independent of the order of texels.
         let mut counts = [[0_u64; 256]; 3];
-        for texel in &self.texels {
+        for texel in self.texels.iter() {
             for (channel, &code) in counts.iter_mut().zip(texel) {
                 channel[usize::from(code)] += 1;
             }

@@ -4,6 +4,7 @@ mod accel;
 mod appearance;
 mod build;
 pub mod builtin;
+mod corners;
 mod description;
 mod diagnostic;
 mod emitter;
@@ -26,6 +27,7 @@ mod mtl_text;
 mod obj;
 mod obj_text;
 mod origin;
+mod paint;
 mod preview;
 mod shape;
 mod sky;
@@ -37,12 +39,17 @@ mod tracer;
 mod validate;
 mod viewpoint;
 
-use common::{Camera, FilterObject, Rgb, SceneFrame};
-use glam::DVec3;
+use std::borrow::Cow;
+use std::f64::consts::{PI, TAU};
 
-use crate::bsdf::Bsdf;
+use common::{Camera, FilterObject, Rgb, SceneFrame};
+use glam::{DVec2, DVec3};
+
+use crate::bsdf::{Bsdf, Local};
 use accel::Accel;
+use corners::Corners;
 use emitter::Emitters;
+use paint::{Map, Paint};
 
 pub use accel::{Anchor, Hit};
 pub use build::SceneError;
@@ -79,6 +86,8 @@ pub struct Scene {
     accel: Accel,
     primitives: Vec<Primitive>,
     surfaces: Vec<SurfaceMaterial>,
+    corners: Corners,
+    maps: Vec<Map>,
     emitters: Emitters,
     /// Of the lights without a surface.
     lamp_names: Vec<String>,
@@ -96,9 +105,21 @@ struct Primitive {
 #[derive(Clone, Debug)]
 struct SurfaceMaterial {
     name: String,
+    /// Its model; with the mean of a texture.
     bsdf: Bsdf,
+    /// The textures it reads.
+    paint: Option<Paint>,
+    /// True when its back is black.
+    one_sided: bool,
     /// Radiance in scene units.
     emission: Rgb,
+}
+
+/// Texture coordinates on a sphere with poles at +y and -y: longitude from +x towards +z, and
+/// latitude from the south.
+fn globe(normal: DVec3) -> DVec2 {
+    let longitude = normal.z.atan2(normal.x) / TAU;
+    DVec2::new(longitude, 1.0 - normal.y.clamp(-1.0, 1.0).acos() / PI)
 }
 
 impl Scene {
@@ -172,7 +193,41 @@ impl Scene {
         self.primitives[primitive as usize].material
     }
 
-    /// The scattering model of a material.
+    /// The scattering at a point of a surface, all of it a function of the point alone.
+    #[inline]
+    pub fn local(&self, at: &Anchor, material: u16) -> Local<'_> {
+        let surface = &self.surfaces[usize::from(material)];
+        let local = Local::flat(Cow::Borrowed(&surface.bsdf), at.normal);
+        if self.features.is_plain() { local } else { self.detailed(local, at, surface) }
+    }
+
+    /// With texture, shading normal and black back, as far as the point has any.
+    fn detailed<'a>(
+        &self,
+        plain: Local<'a>,
+        at: &Anchor,
+        surface: &'a SurfaceMaterial,
+    ) -> Local<'a> {
+        let mut local = plain;
+        let triangle = self.accel.triangles().get(at.primitive as usize);
+        if let Some(paint) = &surface.paint {
+            let uv = match triangle {
+                Some(triangle) => self.corners.texcoord(at.primitive, triangle, at.position),
+                None => Some(globe(at.normal)),
+            };
+            if let Some(uv) = uv {
+                let painted = paint.apply(&surface.bsdf, &self.maps, uv);
+                local = Local::flat(Cow::Owned(painted), at.normal);
+            }
+        }
+        let normal = triangle.and_then(|t| self.corners.normal(at.primitive, t, at.position));
+        if let Some(normal) = normal {
+            local = local.shaded(normal);
+        }
+        if surface.one_sided { local.one_sided() } else { local }
+    }
+
+    /// The scattering model of a material; a textured one with the mean of its texture.
     #[inline]
     pub fn bsdf(&self, material: u16) -> &Bsdf {
         &self.surfaces[usize::from(material)].bsdf

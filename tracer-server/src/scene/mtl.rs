@@ -2,8 +2,23 @@
 
 use common::Rgb;
 
-use super::description::{BsdfDescription, Material};
+use super::description::{BsdfDescription, ColorInput, Material, NumberInput};
 use crate::bsdf::Fresnel;
+
+/// A texture that a material reads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Mapped {
+    /// Its index.
+    pub(super) texture: u16,
+    /// Its mean colour.
+    pub(super) mean: Rgb,
+}
+
+/// The roughness of a GGX lobe as wide as a Phong lobe of that exponent [Walter et al. 2007,
+/// section 5.2].
+pub(super) fn phong_roughness(exponent: f64) -> f64 {
+    (2.0 / (exponent.max(0.0) + 2.0)).sqrt()
+}
 
 /// The statements of one MTL material, as far as they matter here.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,8 +45,10 @@ pub(super) struct MtlEntry {
     pub(super) metallic: Option<f64>,
     /// `illum`.
     pub(super) illumination: Option<u8>,
-    /// Mean of `map_Kd`, or `Err` when the image could not be read.
-    pub(super) diffuse_map: Option<Result<Rgb, String>>,
+    /// `map_Kd`, or `Err` when the image could not be read.
+    pub(super) diffuse_map: Option<Result<Mapped, String>>,
+    /// `map_Pr`, or what `map_Ns` amounts to; `Err` when the image could not be read.
+    pub(super) roughness_map: Option<Result<Mapped, String>>,
     /// Mean of `map_Ke`, or `Err` when the image could not be read.
     pub(super) emission_map: Option<Result<Rgb, String>>,
 }
@@ -117,14 +134,15 @@ impl MtlEntry {
             within("Tf", filter, 1.0, notes)
         };
         // The Fresnel equations say how much a smooth boundary reflects; Ks does not enter.
-        match self.roughness {
-            Some(alpha) if alpha > 0.0 => BsdfDescription::RoughDielectric {
-                eta,
-                reflectance: Rgb::WHITE,
-                transmittance,
-                roughness: alpha.min(1.0).into(),
-            },
-            _ => BsdfDescription::Dielectric { eta, reflectance: Rgb::WHITE, transmittance },
+        let roughness = self.roughness_input(self.roughness.unwrap_or(0.0).clamp(0.0, 1.0), notes);
+        match roughness {
+            NumberInput::Texture { .. } | NumberInput::Constant(f64::MIN_POSITIVE..) => {
+                let reflectance = Rgb::WHITE;
+                BsdfDescription::RoughDielectric { eta, reflectance, transmittance, roughness }
+            }
+            NumberInput::Constant(_) => {
+                BsdfDescription::Dielectric { eta, reflectance: Rgb::WHITE, transmittance }
+            }
         }
     }
 
@@ -138,7 +156,7 @@ impl MtlEntry {
         let is_metal = self.metallic.is_some_and(|metallic| metallic >= 0.5);
         let lobe = if is_metal && specular.is_black() { diffuse } else { specular };
         if lobe.is_black() {
-            let reflectance = within("Kd", diffuse, 1.0, notes).into();
+            let reflectance = self.color_input(diffuse, notes);
             return BsdfDescription::Lambert { reflectance };
         }
         let lobe = within("Ks", lobe, 1.0, notes);
@@ -156,17 +174,20 @@ impl MtlEntry {
             _ => self.coat(lobe),
         };
         match (base_is_black, fresnel) {
-            (true, Fresnel::Constant(reflectance)) if roughness == 0.0 => {
+            (true, Fresnel::Constant(reflectance))
+                if roughness == 0.0 && self.roughness_map.is_none() =>
+            {
                 BsdfDescription::Mirror { reflectance }
             }
             (true, _) => {
                 let fresnel = if is_metal { Fresnel::Schlick(lobe) } else { fresnel };
-                BsdfDescription::Conductor { fresnel, roughness: roughness.into() }
+                let roughness = self.roughness_input(roughness, notes);
+                BsdfDescription::Conductor { fresnel, roughness }
             }
             (false, _) => BsdfDescription::Plastic {
-                diffuse: within("Kd", diffuse, 1.0, notes).into(),
+                diffuse: self.color_input(diffuse, notes),
                 fresnel,
-                roughness,
+                roughness: self.mean_roughness(roughness, notes),
                 nonlinear: false,
             },
         }
@@ -194,16 +215,55 @@ impl MtlEntry {
         };
         match &self.diffuse_map {
             None => self.diffuse.unwrap_or_else(unknown),
-            Some(Ok(mean)) => {
-                notes.push(format!(
-                    "map_Kd: textures are not modelled; the mean colour {} is used",
-                    show(*mean)
-                ));
-                self.diffuse.unwrap_or(Rgb::WHITE) * *mean
-            }
+            Some(Ok(map)) => self.factor() * map.mean,
             Some(Err(error)) => {
                 notes.push(format!("map_Kd: {error}; grey {UNKNOWN_GREY} is used instead"));
                 self.diffuse.unwrap_or(Rgb::WHITE) * UNKNOWN_GREY
+            }
+        }
+    }
+
+    /// What a diffuse texture is multiplied by. Exporters that write only the map mean all of it.
+    fn factor(&self) -> Rgb {
+        self.diffuse.unwrap_or(Rgb::WHITE)
+    }
+
+    /// The diffuse colour, from its texture where there is one.
+    fn color_input(&self, mean: Rgb, notes: &mut Vec<String>) -> ColorInput {
+        match &self.diffuse_map {
+            Some(Ok(map)) => {
+                let factor = within("Kd", self.factor(), 1.0, notes);
+                ColorInput::Texture { texture: map.texture, factor }
+            }
+            _ => within("Kd", mean, 1.0, notes).into(),
+        }
+    }
+
+    /// The roughness, from its texture where there is one.
+    fn roughness_input(&self, constant: f64, notes: &mut Vec<String>) -> NumberInput {
+        match &self.roughness_map {
+            Some(Ok(map)) => {
+                // Beside `map_Pr`, `Pr` is a factor; `map_Ns` is roughness already.
+                let factor = self.roughness.filter(|&pr| pr > 0.0).unwrap_or(1.0).min(1.0);
+                NumberInput::Texture { texture: map.texture, factor }
+            }
+            Some(Err(error)) => {
+                notes.push(format!("roughness texture: {error}; {constant:.3} is used instead"));
+                constant.into()
+            }
+            None => constant.into(),
+        }
+    }
+
+    /// The roughness of a coat, which is the same everywhere.
+    fn mean_roughness(&self, constant: f64, notes: &mut Vec<String>) -> f64 {
+        match self.roughness_input(constant, notes) {
+            NumberInput::Constant(roughness) => roughness,
+            NumberInput::Texture { factor, .. } => {
+                let map = self.roughness_map.as_ref().and_then(|map| map.as_ref().ok());
+                let mean = map.map_or(constant, |map| factor * map.mean.luminance());
+                notes.push(format!("the roughness texture of a coat is its mean, {mean:.3}"));
+                mean
             }
         }
     }
@@ -214,8 +274,7 @@ impl MtlEntry {
         match (self.roughness, self.illumination, self.shininess) {
             (Some(roughness), ..) => roughness.clamp(0.0, 1.0),
             (None, Some(3 | 5 | 8), _) => 0.0,
-            // A Phong lobe of that exponent is as wide [Walter et al. 2007, section 5.2].
-            (None, _, Some(exponent)) => (2.0 / (exponent.max(0.0) + 2.0)).sqrt(),
+            (None, _, Some(exponent)) => phong_roughness(exponent),
             (None, _, None) => 1.0,
         }
     }
@@ -371,14 +430,24 @@ mod tests {
     }
 
     #[test]
-    fn textures_count_with_their_mean() {
+    fn textures_are_read_times_their_colour() {
         let painted = MtlEntry {
             diffuse: Some(Rgb::grey(0.5)),
-            diffuse_map: Some(Ok(Rgb::new(0.2, 0.4, 0.6))),
+            diffuse_map: Some(Ok(Mapped { texture: 3, mean: Rgb::new(0.2, 0.4, 0.6) })),
             ..MtlEntry::default()
         };
-        let expected = BsdfDescription::Lambert { reflectance: Rgb::new(0.1, 0.2, 0.3).into() };
-        assert_eq!(bsdf(&painted), (expected, 1));
+        let reflectance = ColorInput::Texture { texture: 3, factor: Rgb::grey(0.5) };
+        assert_eq!(bsdf(&painted), (BsdfDescription::Lambert { reflectance }, 0));
+        let worn = MtlEntry {
+            specular: Some(Rgb::grey(0.9)),
+            metallic: Some(1.0),
+            roughness_map: Some(Ok(Mapped { texture: 1, mean: Rgb::grey(0.3) })),
+            ..MtlEntry::default()
+        };
+        let (BsdfDescription::Conductor { roughness, .. }, 0) = bsdf(&worn) else {
+            panic!("a metal");
+        };
+        assert_eq!(roughness, NumberInput::Texture { texture: 1, factor: 1.0 });
         let lost = MtlEntry { diffuse_map: Some(Err("a.png: gone".into())), ..MtlEntry::default() };
         let (material, notes) = lost.to_material();
         assert_eq!(material.bsdf, BsdfDescription::Lambert { reflectance: Rgb::grey(0.5).into() });

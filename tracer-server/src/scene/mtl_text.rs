@@ -81,8 +81,10 @@ fn check(keyword: &str, rest: &str) -> Result<Meaning, String> {
             Ok(0..=10) => Ok(Meaning::Keep(rest.to_owned())),
             _ => Err(format!("`{rest}` is not an illumination model; they are numbered 0 to 10")),
         },
-        "map_Kd" | "map_Ke" if rest.is_empty() => Err("the name of an image is missing".to_owned()),
-        "map_Kd" | "map_Ke" => Ok(Meaning::Keep(rest.to_owned())),
+        "map_Kd" | "map_Ke" | "map_Pr" | "map_Ns" if rest.is_empty() => {
+            Err("the name of an image is missing".to_owned())
+        }
+        "map_Kd" | "map_Ke" | "map_Pr" | "map_Ns" => Ok(Meaning::Keep(rest.to_owned())),
         "Ka" | "map_Ka" | "Km" | "sharpness" | "map_aat" => Ok(Meaning::Silent),
         _ => Ok(Meaning::Ignored),
     }

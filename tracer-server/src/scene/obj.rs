@@ -5,11 +5,11 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use common::Rgb;
-use glam::DVec3;
+use glam::{DVec3, Vec2, Vec3};
 
-use super::description::{BsdfDescription, Coding, Material, Mesh};
+use super::description::{BsdfDescription, Coding, Material, Mesh, Texture};
 use super::diagnostic::{LoadError, Place, Warning};
-use super::mtl::{MtlEntry, UNKNOWN_GREY};
+use super::mtl::{Mapped, MtlEntry, UNKNOWN_GREY, phong_roughness};
 use super::mtl_text::{self, MtlText, texture_file};
 use super::obj_text::{self, ObjText};
 use super::text::read_lossy;
@@ -29,6 +29,8 @@ pub(super) struct ObjScene {
     pub(super) places: Vec<Place>,
     /// Its groups.
     pub(super) meshes: Vec<Mesh>,
+    /// The textures that its materials read.
+    pub(super) textures: Vec<Texture>,
     /// What it asks for in vain.
     pub(super) warnings: Vec<Warning>,
 }
@@ -66,6 +68,7 @@ pub(super) fn read(path: &Path) -> Result<ObjScene, LoadError> {
         scene.materials.push(material);
         scene.places.push(place);
     }
+    scene.textures = images.textures;
     add_meshes(path, models, &mut scene)?;
     Ok(scene)
 }
@@ -125,14 +128,43 @@ fn tell_unknown_materials(path: &Path, obj: &ObjText, mtl: &MtlText, warnings: &
 #[derive(Debug, Default)]
 struct Images {
     folder: PathBuf,
-    means: BTreeMap<PathBuf, Result<Rgb, String>>,
+    textures: Vec<Texture>,
+    known: BTreeMap<(PathBuf, Coding), Result<Mapped, String>>,
 }
 
 impl Images {
-    fn mean(&mut self, value: &str) -> Result<Rgb, String> {
+    /// Reads a texture unless it is known, and tells its mean.
+    fn map(&mut self, value: &str, coding: Coding) -> Result<Mapped, String> {
         let file = self.folder.join(texture_file(value));
-        let mean = |file: &PathBuf| Ok(read_texture(file, Coding::Srgb)?.mean());
-        self.means.entry(file).or_insert_with_key(mean).clone()
+        let Self { textures, known, .. } = self;
+        let read = |(file, coding): &(PathBuf, Coding)| {
+            let texture = read_texture(file, *coding)?;
+            let index = u16::try_from(textures.len())
+                .map_err(|_error| "more than 65,536 textures".to_owned())?;
+            let mean = texture.mean();
+            textures.push(texture);
+            Ok(Mapped { texture: index, mean })
+        };
+        known.entry((file, coding)).or_insert_with_key(read).clone()
+    }
+
+    /// A texture of Phong exponents as one of roughness.
+    fn exponents(&mut self, value: &str, full: f64) -> Result<Mapped, String> {
+        let file = self.folder.join(texture_file(value));
+        let mut texture = read_texture(&file, Coding::Linear)?;
+        let rough =
+            |code: u8| (255.0 * phong_roughness(full * f64::from(code) / 255.0)).round() as u8;
+        texture.texels = texture.texels.iter().map(|texel| texel.map(rough)).collect();
+        let index = u16::try_from(self.textures.len())
+            .map_err(|_error| "more than 65,536 textures".to_owned())?;
+        let mean = texture.mean();
+        self.textures.push(texture);
+        Ok(Mapped { texture: index, mean })
+    }
+
+    /// The mean of an emission texture, which is not kept.
+    fn mean(&self, value: &str) -> Result<Rgb, String> {
+        Ok(read_texture(&self.folder.join(texture_file(value)), Coding::Srgb)?.mean())
     }
 
     fn entry(&mut self, source: &tobj::Material) -> MtlEntry {
@@ -154,7 +186,15 @@ impl Images {
             roughness: number("Pr"),
             metallic: number("Pm"),
             illumination: source.illumination_model,
-            diffuse_map: source.diffuse_texture.as_deref().map(|value| self.mean(value)),
+            diffuse_map: source
+                .diffuse_texture
+                .as_deref()
+                .map(|value| self.map(value, Coding::Srgb)),
+            roughness_map: match (parameter("map_Pr"), source.shininess_texture.as_deref()) {
+                (Some(value), _) => Some(self.map(value, Coding::Linear)),
+                (None, Some(value)) => Some(self.exponents(value, source.shininess.unwrap_or(1.0))),
+                (None, None) => None,
+            },
             emission_map: parameter("map_Ke").map(|value| self.mean(value)),
         }
     }
@@ -181,15 +221,33 @@ fn add_meshes(
         let material = u16::try_from(material).map_err(|_error| {
             Place::file(path).error("more than 65,536 materials; merge those that look the same")
         })?;
-        let triangles = mesh.indices.as_chunks::<3>().0.to_vec();
-        let positions = mesh.positions.as_chunks::<3>().0;
-        scene.meshes.push(Mesh {
-            name,
-            positions: positions.iter().map(|&p| DVec3::from_array(p)).collect(),
-            materials: vec![material; triangles.len()],
-            triangles,
-            ..Mesh::default()
-        });
+        scene.meshes.push(to_mesh(&mesh, name, material));
     }
     Ok(())
+}
+
+/// One group with the attributes of its corners.
+fn to_mesh(mesh: &tobj::Mesh, name: String, material: u16) -> Mesh {
+    let triangles = mesh.indices.as_chunks::<3>().0.to_vec();
+    let positions = mesh.positions.as_chunks::<3>().0;
+    let listed = mesh.normals.as_chunks::<3>().0;
+    let normal = |i: u32| {
+        let [x, y, z] = listed.get(i as usize).copied().unwrap_or_default();
+        Vec3::new(x as f32, y as f32, z as f32)
+    };
+    let normals = mesh.normal_indices.as_chunks::<3>().0;
+    let listed = mesh.texcoords.as_chunks::<2>().0;
+    let texcoord = |i: u32| {
+        let [u, v] = listed.get(i as usize).copied().unwrap_or_default();
+        Vec2::new(u as f32, v as f32)
+    };
+    let texcoords = mesh.texcoord_indices.as_chunks::<3>().0;
+    Mesh {
+        name,
+        positions: positions.iter().map(|&p| DVec3::from_array(p)).collect(),
+        materials: vec![material; triangles.len()],
+        normals: normals.iter().map(|corners| corners.map(normal)).collect(),
+        texcoords: texcoords.iter().map(|corners| corners.map(texcoord)).collect(),
+        triangles,
+    }
 }

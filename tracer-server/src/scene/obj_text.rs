@@ -1,7 +1,7 @@
 //! Reads the text of an OBJ file once before the parser does, so that every complaint names its line.
 //!
-//! The parser keeps no line numbers. What remains is a plain OBJ text of positions, faces, names
-//! and material changes.
+//! The parser keeps no line numbers. What remains is a plain OBJ text of positions, texture
+//! coordinates, normals, faces, names and material changes.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -16,7 +16,8 @@ use super::validate::{MAX_TRIANGLES, check_point};
 /// A checked OBJ text.
 #[derive(Debug, Default)]
 pub(super) struct ObjText {
-    /// Statements `v`, `f`, `o` and `usemtl` only, all of them valid.
+    /// Statements `v`, `vt`, `vn`, `f`, `o` and `usemtl` only, all of them valid. The first `vt` and
+    /// `vn` are zeros for corners that name none.
     pub(super) text: String,
     /// Material libraries, each with the line that names it.
     pub(super) libraries: Vec<(String, usize)>,
@@ -34,6 +35,12 @@ pub(super) fn scan(text: &str, file: &Path) -> Result<ObjText, LoadError> {
         scan.statement(&statement)
             .map_err(|message| Place::line(file, statement.line).error(message))?;
     }
+    if scan.texcoords > 0 {
+        scan.out.text.insert_str(0, "vt 0 0\n");
+    }
+    if scan.normals > 0 {
+        scan.out.text.insert_str(0, "vn 0 0 0\n");
+    }
     scan.tell_ignored();
     Ok(scan.out)
 }
@@ -44,6 +51,7 @@ struct Scan<'a> {
     out: ObjText,
     positions: usize,
     triangles: usize,
+    texcoords: usize,
     normals: usize,
     /// Statements that are not modelled: first line and count.
     ignored: BTreeMap<String, (usize, usize)>,
@@ -56,6 +64,7 @@ impl Default for Scan<'_> {
             out: ObjText::default(),
             positions: 0,
             triangles: 0,
+            texcoords: 0,
             normals: 0,
             ignored: BTreeMap::new(),
         }
@@ -85,9 +94,15 @@ impl Scan<'_> {
             }
             "vn" => {
                 self.normals += 1;
-                Ok(())
+                self.numbers("vn", rest, 3)
             }
-            "vt" | "s" => Ok(()),
+            "vt" => {
+                self.texcoords += 1;
+                // A third coordinate belongs to textures of volumes.
+                self.numbers("vt", rest, 2)
+            }
+            // Smooth shading is asked for by normals.
+            "s" => Ok(()),
             _ => {
                 // A file that is no OBJ at all may hold any number of "keywords".
                 if self.ignored.len() < 8 || self.ignored.contains_key(keyword.as_ref()) {
@@ -103,6 +118,25 @@ impl Scan<'_> {
         for part in [keyword, " ", rest, "\n"] {
             self.out.text.push_str(part);
         }
+    }
+
+    /// `vn x y z` or `vt u v`: so many numbers, or a single texture coordinate.
+    fn numbers(&mut self, keyword: &str, rest: &str, wanted: usize) -> Result<(), String> {
+        let mut count = 0;
+        for word in rest.split_whitespace() {
+            number(word)?;
+            count += 1;
+        }
+        if count == 1 && keyword == "vt" {
+            self.emit(keyword, &format!("{} 0", rest.trim()));
+            return Ok(());
+        }
+        if count < wanted {
+            return Err(format!("{keyword} needs {wanted} numbers; here are {count}"));
+        }
+        let end = words_end(rest, wanted);
+        self.emit(keyword, rest.get(..end).unwrap_or(rest));
+        Ok(())
     }
 
     /// `v x y z`, optionally followed by a weight, or by a colour that is not modelled.
@@ -145,8 +179,14 @@ impl Scan<'_> {
         self.out.text.push('f');
         let mut corners = 0;
         for word in rest.split_whitespace() {
-            let index = self.corner(word)?;
-            write!(self.out.text, " {index}").map_err(|error| error.to_string())?;
+            let [v, t, n] = self.corner(word)?;
+            match (self.texcoords > 0, self.normals > 0) {
+                (false, false) => write!(self.out.text, " {v}"),
+                (true, false) => write!(self.out.text, " {v}/{t}"),
+                (false, true) => write!(self.out.text, " {v}//{n}"),
+                (true, true) => write!(self.out.text, " {v}/{t}/{n}"),
+            }
+            .map_err(|error| error.to_string())?;
             corners += 1;
         }
         self.out.text.push('\n');
@@ -160,40 +200,26 @@ impl Scan<'_> {
         Ok(())
     }
 
-    /// The position that a face corner refers to, counted from 1.
-    fn corner(&self, word: &str) -> Result<usize, String> {
+    /// What a face corner refers to, counted from 1: position, texture coordinates and normal. Of
+    /// the last two the first is the one that stands for none.
+    fn corner(&self, word: &str) -> Result<[usize; 3], String> {
         let malformed = || format!("face corner `{word}` is not of the form v, v/t, v//n or v/t/n");
         let mut parts = word.split('/');
-        let position = parts.next().unwrap_or_default();
-        for (i, part) in parts.enumerate() {
-            if i >= 2 || !(part.is_empty() || part.parse::<i64>().is_ok()) {
-                return Err(malformed());
-            }
-        }
-        let index: i64 = position.parse().map_err(|_error| malformed())?;
-        let count = i64::try_from(self.positions).unwrap_or(i64::MAX);
-        let resolved = match index {
-            0 => return Err("face index 0: indices start at 1, or at -1 from the end".to_owned()),
-            i if i < 0 => count.saturating_add(i).saturating_add(1),
-            i => i,
+        let mut next = || match parts.next() {
+            None | Some("") => Ok(None),
+            Some(part) => part.parse::<i64>().map(Some).map_err(|_error| malformed()),
         };
-        if (1..=count).contains(&resolved) {
-            Ok(resolved as usize)
-        } else {
-            Err(format!(
-                "face index {index} refers to a vertex that does not exist: {count} vertices are \
-                 given above this line"
-            ))
+        let (position, texcoord, normal) = (next()?, next()?, next()?);
+        if parts.next().is_some() {
+            return Err(malformed());
         }
+        let v = resolve("vertex", position.ok_or_else(malformed)?, self.positions)?;
+        let t = texcoord.map_or(Ok(0), |t| resolve("texture coordinate", t, self.texcoords))?;
+        let n = normal.map_or(Ok(0), |n| resolve("normal", n, self.normals))?;
+        Ok([v, t + 1, n + 1])
     }
 
     fn tell_ignored(&mut self) {
-        if self.normals > 0 {
-            self.out.warnings.push(Place::file(self.file).warning(format!(
-                "{} vertex normals are ignored: surfaces are shaded flat",
-                self.normals
-            )));
-        }
         for (keyword, (line, count)) in &self.ignored {
             let what = match keyword.as_str() {
                 "l" | "p" => "lines and points have no area",
@@ -205,6 +231,23 @@ impl Scan<'_> {
             );
         }
     }
+}
+
+/// An index counted from 1, given one that may count from the end.
+fn resolve(what: &str, index: i64, count: usize) -> Result<usize, String> {
+    let given = i64::try_from(count).unwrap_or(i64::MAX);
+    let resolved = match index {
+        0 => return Err("face index 0: indices start at 1, or at -1 from the end".to_owned()),
+        i if i < 0 => given.saturating_add(i).saturating_add(1),
+        i => i,
+    };
+    if (1..=given).contains(&resolved) {
+        return Ok(resolved as usize);
+    }
+    Err(format!(
+        "face index {index} refers to a {what} that does not exist: {count} are given above this \
+         line"
+    ))
 }
 
 /// The first characters of a word that may be anything.
@@ -232,9 +275,14 @@ mod tests {
 
     #[test]
     fn faces_are_resolved_and_comments_dropped() {
-        let text = "v 0 0 0\nv 1 0 0 # b\nv 0 1 0 .5 .5 .5\nf -3/1 -2//2 -1/3/3\nv 2 4 6 2\n";
-        let scan = scan(text, Path::new("x.obj")).expect("valid");
-        assert_eq!(scan.text, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nv 1 2 3\n");
+        let text = "v 0 0 0\nv 1 0 0 # b\nv 0 1 0 .5 .5 .5\nf -3 -2 -1\nv 2 4 6 2\n";
+        let scanned = scan(text, Path::new("x.obj")).expect("valid");
+        assert_eq!(scanned.text, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nv 1 2 3\n");
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1 2//-1 3\nvt .5\nf 1/1 2//1 3\n";
+        let scanned = scan(text, Path::new("x.obj")).expect("valid");
+        let faces: Vec<&str> = scanned.text.lines().filter(|l| l.starts_with('f')).collect();
+        assert_eq!(faces, ["f 1//1 2//2 3//1", "f 1/2/1 2/1/2 3/1/1"], "1 stands for none");
+        assert!(scanned.text.starts_with("vn 0 0 0\nvt 0 0\nv "), "{}", scanned.text);
     }
 
     #[test]
@@ -246,6 +294,11 @@ mod tests {
             ("f 0 1 2", "indices start at 1"),
             ("f 1 2", "three corners"),
             ("f 1 2 x", "`x`"),
+            ("f 1//1 2 3", "a normal that does not exist"),
+            ("f 1/1 2 3", "a texture coordinate that does not exist"),
+            ("vn 0 1", "vn needs 3 numbers"),
+            ("vn 0 1 nan", "not a finite number"),
+            ("vt", "vt needs 2 numbers"),
             ("f 1/a 2 3", "`1/a`"),
             ("f 1/1/1/1 2 3", "`1/1/1/1`"),
             ("f 1 2 99999999999999999999", "99999999999999999999"),
@@ -271,12 +324,11 @@ mod tests {
 
     #[test]
     fn what_is_not_modelled_is_told_once() {
-        let text = "vn 0 0 1\nvn 0 0 1\nl 1 2\nl 1 2\ncurv 0 1\n";
+        let text = "vn 0 0 1\nvt 0 0\nl 1 2\nl 1 2\ncurv 0 1\n";
         let scan = scan(text, Path::new("x.obj")).expect("valid");
         let told: Vec<String> = scan.warnings.iter().map(ToString::to_string).collect();
-        assert_eq!(told.len(), 3, "{told:?}");
-        assert!(told[0].contains("2 vertex normals"), "{told:?}");
-        assert!(told[1].starts_with("x.obj:5"), "{told:?}");
-        assert!(told[2].starts_with("x.obj:3") && told[2].contains("2 times"), "{told:?}");
+        assert_eq!(told.len(), 2, "{told:?}");
+        assert!(told[0].starts_with("x.obj:5"), "{told:?}");
+        assert!(told[1].starts_with("x.obj:3") && told[1].contains("2 times"), "{told:?}");
     }
 }

@@ -75,12 +75,19 @@ impl Triangle {
 
     /// The numbers from which [`Triangle::sample`] makes the point `at`.
     pub(crate) fn invert(&self, at: DVec3) -> [f64; 2] {
+        let [b1, b2] = self.barycentric(at);
+        invert_uniform_triangle(b1.max(0.0), b2.max(0.0))
+    }
+
+    /// The weights of the second and third corner in a point of the plane.
+    #[inline]
+    pub(crate) fn barycentric(&self, at: DVec3) -> [f64; 2] {
         let cross = self.e1.cross(self.e2);
         let from_corner = at - self.v0;
         let scale = 1.0 / cross.length_squared();
         let b1 = from_corner.cross(self.e2).dot(cross) * scale;
         let b2 = self.e1.cross(from_corner).dot(cross) * scale;
-        invert_uniform_triangle(b1.max(0.0), b2.max(0.0))
+        [b1, b2]
     }
 
     pub(crate) fn to_single(self) -> [Vec3A; 3] {

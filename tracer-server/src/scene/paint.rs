@@ -1,0 +1,125 @@
+//! Textures as the tracer reads them.
+
+use std::sync::Arc;
+
+use common::Rgb;
+use glam::DVec2;
+
+use super::description::{Coding, ColorInput, NumberInput, Texture};
+use crate::bsdf::{Bsdf, Ggx, deepened};
+
+/// A texture with its codes decoded on the way.
+#[derive(Debug)]
+pub(super) struct Map {
+    width: usize,
+    height: usize,
+    texels: Arc<[[u8; 3]]>,
+    /// The number that each code stands for.
+    decoded: Box<[f64; 256]>,
+}
+
+impl Map {
+    pub(super) fn new(texture: &Texture) -> Self {
+        let Texture { width, height, coding, .. } = *texture;
+        let mut decoded = Box::new([0.0; 256]);
+        for (code, value) in (0_u8..=255).zip(decoded.iter_mut()) {
+            *value = Coding::decode(coding, code);
+        }
+        let texels = Arc::clone(&texture.texels);
+        Self { width: width as usize, height: height as usize, texels, decoded }
+    }
+
+    /// The colour at a point by bilinear interpolation between the four texels around it; the image
+    /// repeats in both directions.
+    pub(super) fn at(&self, uv: DVec2) -> Rgb {
+        let (x, x_next, across) = neighbours(uv.x, self.width);
+        let (y, y_next, down) = neighbours(1.0 - uv.y, self.height);
+        let row = |y: usize| {
+            let (left, right) = (self.texel(x, y), self.texel(x_next, y));
+            left * (1.0 - across) + right * across
+        };
+        row(y) * (1.0 - down) + row(y_next) * down
+    }
+
+    fn texel(&self, x: usize, y: usize) -> Rgb {
+        let [r, g, b] = self.texels[y * self.width + x].map(|c| self.decoded[usize::from(c)]);
+        Rgb::new(r, g, b)
+    }
+}
+
+/// The two texels around a coordinate, and the share of the second.
+fn neighbours(coordinate: f64, count: usize) -> (usize, usize, f64) {
+    // Texels have their values in their middles.
+    let position = coordinate.rem_euclid(1.0) * count as f64 - 0.5;
+    let below = position.floor();
+    let first = (below + count as f64) as usize % count;
+    (first, (first + 1) % count, position - below)
+}
+
+/// Which textures a material reads.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Paint {
+    pub(super) color: Option<ColorInput>,
+    pub(super) roughness: Option<NumberInput>,
+    /// Index of a coat below which the colour grows deeper.
+    pub(super) coat: Option<f64>,
+}
+
+impl Paint {
+    /// The model at a point.
+    pub(super) fn apply(&self, bsdf: &Bsdf, maps: &[Map], uv: DVec2) -> Bsdf {
+        let map = |texture: u16| maps.get(usize::from(texture)).map(|map| map.at(uv));
+        let color = match self.color {
+            Some(ColorInput::Texture { texture, factor }) => map(texture).map(|c| c * factor),
+            _ => None,
+        };
+        let color = color.map(|color| self.coat.map_or(color, |eta| deepened(color, eta)));
+        let alpha = match self.roughness {
+            Some(NumberInput::Texture { texture, factor }) => {
+                map(texture).map(|c| c.luminance() * factor)
+            }
+            _ => None,
+        };
+        bsdf.painted(color, alpha.map(Ggx::new))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn checks() -> Map {
+        Map::new(&Texture {
+            name: "checks".to_owned(),
+            width: 2,
+            height: 2,
+            texels: vec![[255, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 255]].into(),
+            coding: Coding::Linear,
+        })
+    }
+
+    #[test]
+    fn texels_lie_row_by_row_from_the_top() {
+        let map = checks();
+        let at = |u, v| map.at(DVec2::new(u, v));
+        assert_eq!(at(0.25, 0.75), Rgb::new(1.0, 0.0, 0.0), "the first one is at the top left");
+        assert_eq!(at(0.75, 0.25), Rgb::new(0.0, 0.0, 1.0), "the last one at the bottom right");
+        assert_eq!(at(0.5, 0.5), Rgb::new(0.25, 0.0, 0.25), "the middle is the mean of all");
+    }
+
+    #[test]
+    fn the_image_repeats_without_a_seam() {
+        let map = checks();
+        for (u, v) in [(0.1, 0.9), (0.0, 0.0), (0.999, 0.3)] {
+            let here = map.at(DVec2::new(u, v));
+            for (du, dv) in [(1.0, 0.0), (-3.0, 2.0), (0.0, -1.0)] {
+                let there = map.at(DVec2::new(u + du, v + dv));
+                assert!((here.r - there.r).abs() + (here.b - there.b).abs() < 1e-12, "{u} {v}");
+            }
+        }
+        let (left, right) = (map.at(DVec2::new(1e-9, 0.75)), map.at(DVec2::new(1.0 - 1e-9, 0.75)));
+        assert!((left.r - right.r).abs() < 1e-6, "{left:?} {right:?}");
+        // A coordinate just below zero is rounded up to one.
+        assert!(map.at(DVec2::splat(-1e-30)).is_physical(), "no texel beyond the last");
+    }
+}
