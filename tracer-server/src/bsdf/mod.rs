@@ -149,8 +149,8 @@ impl Bsdf {
             Self::Dielectric(m) => m.transmittance,
             Self::RoughConductor(m) => m.fresnel.at(1.0),
             Self::RoughDielectric(m) => m.facet.transmittance,
-            Self::Plastic(m) => m.diffuse + m.fresnel.at(1.0),
-            Self::RoughPlastic(m) => m.diffuse + m.fresnel.at(1.0),
+            Self::Plastic(m) => m.diffuse,
+            Self::RoughPlastic(m) => m.diffuse,
         }
     }
 

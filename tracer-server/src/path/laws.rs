@@ -97,8 +97,9 @@ pub(super) fn shading(scene: &Tracer<'_>, at: &Vertex) -> DVec3 {
     scene.local(&at.anchor(), at.material).shading()
 }
 
-/// Luminance of `f` with respect to area measure (solid angle at an infinite start), factor by
-/// factor from the vertices. Edges have geometric cosines at their light end and shading cosines at
+/// Luminance of `f` with respect to area measure, factor by factor from the vertices.
+///
+/// At an infinite start the measure is solid angle. Edges have geometric cosines at their light end and shading cosines at
 /// their eye end.
 fn area_contribution(scene: &Tracer<'_>, path: &Path, start: &Start) -> f64 {
     let v = path.vertices();

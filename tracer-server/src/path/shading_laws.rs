@@ -15,13 +15,23 @@ fn arrival(scene: &Tracer<'_>, path: &Path, j: usize) -> f64 {
     (shading(scene, at).dot(w) / at.normal.dot(w)).abs()
 }
 
-/// `S` of a path when factors of arrival are forgotten: in the walks, or at connections.
-fn forgetful_sum(scene: &Tracer<'_>, path: &Path, in_walks: bool, at_connections: bool) -> f64 {
+/// Which adjoint factors are forgotten.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Forgotten {
+    Nothing,
+    InTheWalk,
+    AtTheConnection,
+}
+
+/// `S` of a path when factors of arrival are forgotten.
+fn forgetful_sum(scene: &Tracer<'_>, path: &Path, forgotten: Forgotten) -> f64 {
     let k = path.edge_count();
     let split = |light: usize| {
-        let walked = (1..light).filter(|_| in_walks);
-        let connected = (light..light + 1).filter(|&j| at_connections && j >= 1 && j < k);
-        let lost: f64 = walked.chain(connected).map(|j| arrival(scene, path, j)).product();
+        let lost: f64 = match forgotten {
+            Forgotten::InTheWalk => (1..light).map(|j| arrival(scene, path, j)).product(),
+            Forgotten::AtTheConnection if (1..k).contains(&light) => arrival(scene, path, light),
+            Forgotten::AtTheConnection | Forgotten::Nothing => 1.0,
+        };
         path.reciprocal(light) * lost
     };
     (0..=k).map(split).sum()
@@ -69,14 +79,12 @@ fn worst_z(a: &[Accumulator], b: &[Accumulator]) -> f64 {
 fn forgotten_factors_of_shading_normals_are_found() {
     let room = bumpy_room();
     let right = light_on_film(&room, 1, |_, path| path.density_sum());
-    let again = light_on_film(&room, 2, |scene, path| forgetful_sum(scene, path, false, false));
+    let again =
+        light_on_film(&room, 2, |scene, path| forgetful_sum(scene, path, Forgotten::Nothing));
     assert!(worst_z(&right, &again) < 6.0, "right: {}", worst_z(&right, &again));
-    for (name, in_walks, at_connections) in
-        [("in the walk", true, false), ("at the connection", false, true)]
-    {
-        let wrong =
-            light_on_film(&room, 3, |s, path| forgetful_sum(s, path, in_walks, at_connections));
+    for forgotten in [Forgotten::InTheWalk, Forgotten::AtTheConnection] {
+        let wrong = light_on_film(&room, 3, |scene, path| forgetful_sum(scene, path, forgotten));
         let z = worst_z(&right, &wrong);
-        assert!(z > 6.0, "forgotten {name}: only |z| = {z}");
+        assert!(z > 6.0, "{forgotten:?}: only |z| = {z}");
     }
 }

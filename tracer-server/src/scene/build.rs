@@ -103,16 +103,12 @@ impl Scene {
             .iter()
             .map(|m| surface(description, m, 1.0 / radiance_scale))
             .collect();
-        let mut used = materials.clone();
-        used.sort_unstable();
-        used.dedup();
-        let used: Vec<_> = used.into_iter().map(|m| &surfaces[usize::from(m)]).collect();
+        let used = used_surfaces(&materials, &surfaces);
         let features =
             SceneFeatures::of(&used, spheres, corners.has_normals(), (&emitters, &camera));
         if !features.textures {
             corners.drop_texcoords();
         }
-        let maps = description.textures.iter().map(Map::new).collect();
         Ok(Self {
             name: description.name.clone(),
             hash: hash::digest(description),
@@ -125,13 +121,21 @@ impl Scene {
             primitives,
             surfaces,
             corners,
-            maps,
+            maps: description.textures.iter().map(Map::new).collect(),
             emitters,
             lamp_names: description.lights.iter().map(|light| light.name.clone()).collect(),
             objects,
             warnings,
         })
     }
+}
+
+/// The materials that some shape has, each once.
+fn used_surfaces<'a>(materials: &[u16], all: &'a [SurfaceMaterial]) -> Vec<&'a SurfaceMaterial> {
+    let mut used = materials.to_vec();
+    used.sort_unstable();
+    used.dedup();
+    used.into_iter().map(|m| &all[usize::from(m)]).collect()
 }
 
 /// The frame that brings the scene's largest extent into [1024, 2048): the box test of the

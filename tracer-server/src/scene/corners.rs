@@ -83,5 +83,8 @@ fn unit_normals(given: &[Vec3; 3], triangle: &Triangle) -> Option<[Vec3; 3]> {
     let side = unit.iter().map(|n| n.dot(own)).sum::<f64>().signum();
     let unit = unit.map(|n| side * n);
     let is_flat = unit.iter().all(|n| n.dot(own) > FLAT);
-    (!is_flat).then(|| unit.map(|n| n.as_vec3()))
+    (!is_flat).then(|| {
+        let [a, b, c] = unit;
+        [a.as_vec3(), b.as_vec3(), c.as_vec3()]
+    })
 }

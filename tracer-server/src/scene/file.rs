@@ -6,16 +6,18 @@
 use std::path::Path;
 
 use common::{CameraPose, Rgb};
-use glam::DVec3;
+use glam::{DVec3, Vec2, Vec3};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::description::{BsdfDescription, Material, Mesh, SceneDescription, Sphere};
+use super::description::{Coding, Material, Mesh, SceneDescription, Sphere};
 use super::diagnostic::{LoadError, Place, Warning};
+use super::file_material::{MaterialEntry, ReadTexture};
 use super::obj;
 use super::origin::Origins;
 use super::shape::{Cuboid, Quad, Step, Surface};
 use super::strategies::{self, StrategySetting, StrategyTable};
+use super::texture::read_texture;
 use super::validate::Part;
 
 /// A scene file, verbatim.
@@ -89,56 +91,6 @@ fn plus_y() -> DVec3 {
     DVec3::Y
 }
 
-/// `[[materials]]`: how a surface scatters and emits.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct MaterialEntry {
-    /// The name that shapes refer to.
-    name: String,
-    /// `"lambert"`, `"mirror"` or `"dielectric"`.
-    model: Model,
-    /// Share of light reflected, in [0, 1]; a number or `[r, g, b]`. Needed by `lambert` and
-    /// `mirror`; for `dielectric` a tint of what the Fresnel equations reflect, default 1.
-    reflectance: Option<Color>,
-    /// `dielectric` only: tint of what is refracted at each crossing, in [0, 1]; default 1.
-    transmittance: Option<Color>,
-    /// `dielectric` only, needed: index of refraction behind the surface over that in front.
-    eta: Option<f64>,
-    /// Radiance emitted from the front side, a number or `[r, g, b]`; default 0.
-    emission: Option<Color>,
-}
-
-/// A scattering model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum Model {
-    /// Ideal diffuse reflection on both sides.
-    Lambert,
-    /// Ideal mirror on both sides.
-    Mirror,
-    /// A smooth boundary between two transparent media.
-    Dielectric,
-}
-
-/// A grey value or a colour.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(untagged, expecting = "a number, or three numbers [r, g, b]")]
-enum Color {
-    /// The same in all channels.
-    Grey(f64),
-    /// Red, green and blue.
-    Rgb(Rgb),
-}
-
-impl From<Color> for Rgb {
-    fn from(color: Color) -> Self {
-        match color {
-            Color::Grey(value) => Self::grey(value),
-            Color::Rgb(rgb) => rgb,
-        }
-    }
-}
-
 /// `[[meshes]]`: triangles, given in exactly one of four ways: `rectangle`, `box`, `positions`
 /// with `triangles`, or `obj`.
 #[derive(Clone, Debug, Deserialize)]
@@ -157,6 +109,10 @@ struct MeshEntry {
     positions: Option<Vec<DVec3>>,
     /// Indices into `positions`, counted from 0; counter-clockwise seen from the front.
     triangles: Option<Vec<[u32; 3]>>,
+    /// Shading normals `[[x, y, z], ...]`, one a position; without them the mesh is flat.
+    normals: Option<Vec<Vec3>>,
+    /// Texture coordinates `[[u, v], ...]`, one a position; `v` runs upwards.
+    texcoords: Option<Vec<Vec2>>,
     /// An OBJ file, relative to this one.
     obj: Option<String>,
     /// Steps that apply in order: `{ translate = [x, y, z] }`,
@@ -260,10 +216,11 @@ impl Read {
             let message = format!("material `{name}` was defined before, at {before}; rename one");
             return Err(self.error(&place, "name", message));
         }
-        let bsdf = material.bsdf().map_err(|(field, message)| {
+        let bsdf = material.bsdf(self).map_err(|(field, message)| {
             self.error(&place, field, format!("material `{name}`, {field}: {message}"))
         })?;
         self.description.materials.push(Material {
+            two_sided: material.two_sided,
             emission: material.emission.map_or(Rgb::BLACK, Rgb::from),
             ..Material::new(name, bsdf)
         });
@@ -316,8 +273,8 @@ impl Read {
             if mesh.flip {
                 surface.flip();
             }
-            let Surface { positions, triangles } = surface;
-            let mesh = Mesh { name, positions, triangles, materials, ..Mesh::default() };
+            let Surface { positions, triangles, normals, texcoords } = surface;
+            let mesh = Mesh { name, positions, triangles, materials, normals, texcoords };
             self.description.meshes.push(mesh);
             self.origins.meshes.push(place.clone());
         }
@@ -341,18 +298,24 @@ impl Read {
             other => other,
         })?;
         let offset = self.description.materials.len();
+        let place_of_obj = self.origins.field(place, "obj");
+        let too_many = |what| place_of_obj.clone().error(format!("more than 65,536 {what}"));
         if material.is_none() {
+            let textures = u16::try_from(self.description.textures.len() + scene.textures.len())
+                .map_err(|_error| too_many("textures"))?
+                - scene.textures.len() as u16;
+            self.description.textures.extend(scene.textures);
             for (mut material, place) in scene.materials.into_iter().zip(scene.places) {
                 if self.index_of(&material.name).is_some() {
                     material.name = format!("{}/{}", mesh.name, material.name);
                 }
+                material.bsdf = material.bsdf.with_textures_after(textures);
                 self.description.materials.push(material);
                 self.origins.materials.push(place);
             }
             self.warnings.extend(scene.warnings);
         }
-        let too_many = || self.error(place, "obj", "more than 65,536 materials");
-        let shift = u16::try_from(offset).map_err(|_error| too_many())?;
+        let shift = u16::try_from(offset).map_err(|_error| too_many("materials"))?;
         let mut surfaces = Vec::new();
         for group in scene.meshes {
             let materials: Option<Vec<u16>> = group
@@ -360,8 +323,9 @@ impl Read {
                 .iter()
                 .map(|own| material.map_or_else(|| own.checked_add(shift), Some))
                 .collect();
-            let surface = Surface { positions: group.positions, triangles: group.triangles };
-            surfaces.push((group.name, materials.ok_or_else(too_many)?, surface));
+            let Mesh { positions, triangles, normals, texcoords, .. } = group;
+            let surface = Surface { positions, triangles, normals, texcoords };
+            surfaces.push((group.name, materials.ok_or_else(|| too_many("materials"))?, surface));
         }
         Ok(surfaces)
     }
@@ -389,6 +353,26 @@ enum Given<'a> {
 }
 
 impl MeshEntry {
+    /// The listed triangles with what the positions carry.
+    fn listed(&self, positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Surface, &'static str> {
+        let count = positions.len();
+        if self.normals.as_ref().is_some_and(|normals| normals.len() != count) {
+            return Err("there must be as many normals as positions");
+        }
+        if self.texcoords.as_ref().is_some_and(|texcoords| texcoords.len() != count) {
+            return Err("there must be as many texcoords as positions");
+        }
+        Ok(Surface {
+            positions: positions.to_vec(),
+            triangles: triangles.to_vec(),
+            normals: self.normals.as_deref().map_or_else(Vec::new, |n| at_corners(n, triangles)),
+            texcoords: self
+                .texcoords
+                .as_deref()
+                .map_or_else(Vec::new, |t| at_corners(t, triangles)),
+        })
+    }
+
     fn inline(&self) -> Result<Given<'_>, &'static str> {
         let Self { rectangle, cuboid, positions, triangles, obj, .. } = self;
         match (rectangle, cuboid, positions, triangles, obj) {
@@ -401,8 +385,7 @@ impl MeshEntry {
                 }
             }
             (None, None, Some(positions), Some(triangles), None) => {
-                let (positions, triangles) = (positions.clone(), triangles.clone());
-                Ok(Given::Inline(Surface { positions, triangles }))
+                self.listed(positions, triangles).map(Given::Inline)
             }
             (None, None, None, None, Some(file)) => Ok(Given::File(file)),
             (None, None, Some(_), None, None) => Err("positions need triangles"),
@@ -412,32 +395,22 @@ impl MeshEntry {
     }
 }
 
-impl MaterialEntry {
-    /// The model with its parameters, or the field that is amiss.
-    fn bsdf(&self) -> Result<BsdfDescription, (&'static str, &'static str)> {
-        let needed = ("reflectance", "this model needs it: a number or [r, g, b] in [0, 1]");
-        let reflectance = self.reflectance.map(Rgb::from);
-        if self.model != Model::Dielectric {
-            let glass_only = "only the model `dielectric` has it; remove it or change the model";
-            if self.eta.is_some() {
-                return Err(("eta", glass_only));
-            }
-            if self.transmittance.is_some() {
-                return Err(("transmittance", glass_only));
-            }
+/// The values at the corners of all triangles; of an index that does not exist the default, since
+/// that index is refused later.
+fn at_corners<T: Copy + Default>(values: &[T], triangles: &[[u32; 3]]) -> Vec<[T; 3]> {
+    let value = |i: u32| values.get(i as usize).copied().unwrap_or_default();
+    triangles.iter().map(|triangle| triangle.map(value)).collect()
+}
+
+impl ReadTexture for Read {
+    fn read(&mut self, file: &str, coding: Coding) -> Result<u16, String> {
+        let folder = self.origins.whole.file.parent().unwrap_or_else(|| Path::new(""));
+        let texture = read_texture(&folder.join(file), coding)?;
+        let textures = &mut self.description.textures;
+        if let Some(known) = textures.iter().position(|other| *other == texture) {
+            return u16::try_from(known).map_err(|error| error.to_string());
         }
-        match self.model {
-            Model::Lambert => {
-                Ok(BsdfDescription::Lambert { reflectance: reflectance.ok_or(needed)?.into() })
-            }
-            Model::Mirror => {
-                Ok(BsdfDescription::Mirror { reflectance: reflectance.ok_or(needed)? })
-            }
-            Model::Dielectric => Ok(BsdfDescription::Dielectric {
-                eta: self.eta.ok_or(("eta", "the model `dielectric` needs it (glass is 1.5)"))?,
-                reflectance: reflectance.unwrap_or(Rgb::WHITE),
-                transmittance: self.transmittance.map_or(Rgb::WHITE, Rgb::from),
-            }),
-        }
+        textures.push(texture);
+        u16::try_from(textures.len() - 1).map_err(|_error| "more than 65,536 textures".to_owned())
     }
 }

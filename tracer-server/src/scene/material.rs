@@ -81,6 +81,23 @@ pub enum BsdfDescription {
     },
 }
 
+impl BsdfDescription {
+    /// The same model reading textures that are `by` places further on in the list.
+    #[must_use]
+    pub fn with_textures_after(mut self, by: u16) -> Self {
+        match &mut self {
+            Self::Lambert { reflectance: ColorInput::Texture { texture, .. } }
+            | Self::Plastic { diffuse: ColorInput::Texture { texture, .. }, .. }
+            | Self::Conductor { roughness: NumberInput::Texture { texture, .. }, .. }
+            | Self::RoughDielectric { roughness: NumberInput::Texture { texture, .. }, .. } => {
+                *texture = texture.saturating_add(by);
+            }
+            _ => {}
+        }
+        self
+    }
+}
+
 /// A number that is the same everywhere, or read from a texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NumberInput {

@@ -12,6 +12,7 @@ mod emitter;
 mod examples;
 mod features;
 mod file;
+mod file_material;
 #[cfg(test)]
 pub(crate) mod fixtures;
 mod hash;

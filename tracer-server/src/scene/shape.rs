@@ -1,6 +1,6 @@
 //! The shapes and transforms of the project's own scene files.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec2, Vec3};
 use serde::Deserialize;
 
 /// Vertex positions and triangles, counter-clockwise seen from the front side.
@@ -10,6 +10,10 @@ pub(super) struct Surface {
     pub(super) positions: Vec<DVec3>,
     /// Indices into them.
     pub(super) triangles: Vec<[u32; 3]>,
+    /// Shading normals at the corners of each triangle, or nothing.
+    pub(super) normals: Vec<[Vec3; 3]>,
+    /// Texture coordinates at the corners of each triangle, or nothing.
+    pub(super) texcoords: Vec<[Vec2; 3]>,
 }
 
 /// A flat parallelogram of two triangles.
@@ -35,6 +39,8 @@ impl Quad {
         Surface {
             positions: vec![corner, corner + u, corner + u + v, corner + v],
             triangles: vec![[0, 1, 2], [0, 2, 3]],
+            texcoords: vec![[Vec2::ZERO, Vec2::X, Vec2::ONE], [Vec2::ZERO, Vec2::ONE, Vec2::Y]],
+            ..Surface::default()
         }
     }
 }
@@ -68,7 +74,11 @@ impl Cuboid {
         let faces =
             [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
         let triangles = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
-        Surface { positions: (0..8).map(corner).collect(), triangles: triangles.collect() }
+        Surface {
+            positions: (0..8).map(corner).collect(),
+            triangles: triangles.collect(),
+            ..Surface::default()
+        }
     }
 }
 
@@ -120,6 +130,7 @@ impl Surface {
                     )?;
                     let matrix = DMat3::from_axis_angle(axis, degrees.to_radians());
                     self.map(|p| matrix * p);
+                    self.map_normals(|n| matrix * n);
                 }
                 Step::Scale(factors) => {
                     let factors = match *factors {
@@ -131,9 +142,11 @@ impl Surface {
                         return Err("scale needs finite factors that are not zero".to_owned());
                     }
                     self.map(|p| p * factors);
+                    // Normals stay square to surfaces that are stretched.
+                    self.map_normals(|n| n / factors);
                     if volume < 0.0 {
                         // A mirror image turns counter-clockwise into clockwise.
-                        self.flip();
+                        self.reverse();
                     }
                 }
             }
@@ -143,8 +156,20 @@ impl Surface {
 
     /// Turns the front sides to the back.
     pub(super) fn flip(&mut self) {
-        for triangle in &mut self.triangles {
-            triangle.swap(1, 2);
+        self.reverse();
+        self.map_normals(|n| -n);
+    }
+
+    /// Turns all triangles round.
+    fn reverse(&mut self) {
+        self.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        self.normals.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        self.texcoords.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    }
+
+    fn map_normals(&mut self, f: impl Fn(DVec3) -> DVec3) {
+        for normal in self.normals.as_flattened_mut() {
+            *normal = f(normal.as_dvec3()).normalize_or_zero().as_vec3();
         }
     }
 

@@ -163,7 +163,7 @@ mod tests {
             let v = side.cross(u);
             let corner = DVec3::Y + side - u - v;
             let quad = Quad { corner, u: 2.0 * u, v: 2.0 * v };
-            let Surface { positions, triangles } = quad.surface();
+            let Surface { positions, triangles, .. } = quad.surface();
             Mesh { materials: vec![0; triangles.len()], positions, triangles, ..Mesh::default() }
         };
         walls.map(mesh).collect()
@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn a_closed_room_is_seen_from_within() {
         let room = Cuboid { min: DVec3::ZERO, max: DVec3::ONE };
-        let Surface { positions, triangles } = room.surface();
+        let Surface { positions, triangles, .. } = room.surface();
         let mesh =
             Mesh { materials: vec![0; triangles.len()], positions, triangles, ..Mesh::default() };
         let origin = guess(&[mesh]).camera.origin;
