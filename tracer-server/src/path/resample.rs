@@ -1,6 +1,6 @@
 //! Replacing a range of a path by two random walks and one connection.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::walk::{Aim, emit, light_vertex, scatter, walk};
 use super::{Failure, Numbers, Path, Splice, Strand, Vertex, Vertices};
@@ -113,6 +113,20 @@ pub fn end_on_light(scene: &Tracer<'_>, end: &mut Vertex) -> Result<(), Failure>
     Ok(())
 }
 
+/// Draws a direction away from a kept vertex, which must do what it did: a coat that mirrors where it
+/// scattered before would make another path of what is kept.
+#[inline]
+fn leave(
+    scene: &Tracer<'_>,
+    kept: &mut Vertex,
+    back: DVec3,
+    u: [f64; 3],
+) -> Result<DVec3, Failure> {
+    let event = kept.event;
+    let onward = scatter(scene, kept, back, u)?;
+    if kept.event == event { Ok(onward) } else { Err(Failure::KindChanged) }
+}
+
 fn walk_from_light(
     scene: &Tracer<'_>,
     x: &Path,
@@ -138,7 +152,8 @@ fn walk_from_light(
         kept => {
             let mut start = x.vertices()[kept - 1];
             let back = -x.edges()[kept - 2].direction;
-            let direction = scatter(scene, &mut start, back, numbers.row(Strand::Light, kept))?;
+            let row = numbers.row(Strand::Light, kept);
+            let direction = leave(scene, &mut start, back, row)?;
             (start, direction)
         }
     };
@@ -181,7 +196,7 @@ fn walk_from_eye(
     } else {
         let mut start = x.vertices()[range.kept_from];
         let back = x.edges()[range.kept_from].direction;
-        let onward = scatter(scene, &mut start, back, numbers.row(Strand::Eye, kept))?;
+        let onward = leave(scene, &mut start, back, numbers.row(Strand::Eye, kept))?;
         (start, onward)
     };
     let scattering = |j| numbers.row(Strand::Eye, Strand::Eye.scattering_row(kept + j));

@@ -108,7 +108,7 @@ fn every_mistake_in_a_toml_scene_is_located() {
         ("\"lambert\"", "\"phong\"", "14", "unknown variant `phong`"),
         ("[0.5, 0.5, 0.5]", "[0.5, 1.5, 0.5]", "15", "material `lamp`, reflectance"),
         ("[0.5, 0.5, 0.5]", "[0.5, -0.1, 0.5]", "15", "[0, 1]"),
-        ("[0.5, 0.5, 0.5]", "[0.5, 0.5]", "15", "a number, or three numbers"),
+        ("[0.5, 0.5, 0.5]", "[0.5, 0.5]", "15", "a number, three numbers"),
         ("[0.5, 0.5, 0.5]", "nan", "15", "[0, 1]"),
         ("reflectance = [0.5, 0.5, 0.5]", "", "12", "reflectance: this model needs it"),
         ("emission = 2", "emission = -2", "16", "material `lamp`, emission"),
