@@ -114,3 +114,46 @@ impl<'a> Local<'a> {
         onward.filter(|onward| self.sees(w) && self.sees(*onward))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use common::Rgb;
+
+    use super::*;
+    use crate::bsdf::Lambert;
+
+    #[test]
+    fn a_one_sided_surface_is_black_behind() {
+        let paint = Bsdf::Lambert(Lambert { reflectance: Rgb::grey(0.5) });
+        let front = DVec3::new(0.6, 0.0, 0.8);
+        let numbers = [0.3, 0.6, 0.9];
+        for side in [1.0, -1.0] {
+            let both = Local::flat(Cow::Borrowed(&paint), DVec3::Z);
+            let (w, onward) = (side * front, side * DVec3::Z);
+            let lit = |local: &Local<'_>| {
+                let drawn = local.sample(w, numbers).is_some();
+                let seen = local.evaluate(w, onward, Event::Diffuse).is_some();
+                assert_eq!(drawn, seen, "sampling and evaluation agree");
+                seen
+            };
+            assert!(lit(&both), "two-sided");
+            assert_eq!(lit(&both.one_sided()), side > 0.0, "one-sided");
+        }
+    }
+
+    #[test]
+    fn what_the_two_normals_see_differently_is_black() {
+        let paint = Bsdf::Lambert(Lambert { reflectance: Rgb::WHITE });
+        let shading = DVec3::new(0.6, 0.0, 0.8);
+        let local = Local::flat(Cow::Borrowed(&paint), DVec3::Z).shaded(shading);
+        // Above the surface, but below the plane that it is shaded by.
+        let hidden = DVec3::new(-0.9, 0.0, 0.1).normalize();
+        assert!(local.evaluate(hidden, DVec3::Z, Event::Diffuse).is_none(), "from the light");
+        assert!(local.evaluate(DVec3::Z, hidden, Event::Diffuse).is_none(), "to the eye");
+        let s = local.evaluate(DVec3::Z, shading, Event::Diffuse).expect("both see it");
+        let arrival = 0.8 / 1.0;
+        let departure = 0.8 / 1.0;
+        assert!((s.light_weight - arrival * departure).abs() < 1e-12, "{s:?}");
+        assert!((s.eye_weight - 1.0).abs() < 1e-12, "{s:?}");
+    }
+}
