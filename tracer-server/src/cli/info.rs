@@ -99,13 +99,14 @@ fn materials(rows: &[MaterialRow]) -> Table {
 }
 
 fn lights(rows: &[LightRow]) -> Table {
-    let mut table = table(&["light", "shapes", "area", "radiance", "power", "share"]);
+    let mut table = table(&["light", "kind", "shapes", "area", "colour", "power", "share"]);
     let total: f64 = rows.iter().map(|row| row.power).sum();
     for row in rows {
         table.add_row(vec![
             row.material.clone(),
-            row.shapes.to_string(),
-            short(row.area),
+            row.kind.to_owned(),
+            if row.shapes == 0 { String::new() } else { row.shapes.to_string() },
+            if row.shapes == 0 { String::new() } else { short(row.area) },
             color(row.radiance),
             short(row.power),
             format!("{:.1} %", 100.0 * row.power / total),

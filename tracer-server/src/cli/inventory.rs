@@ -67,15 +67,18 @@ pub(crate) struct MaterialRow {
 /// All shapes of one emitting material.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct LightRow {
-    /// The material's name.
+    /// The name of the material, or of a light without a surface.
     pub(crate) material: String,
+    /// What it is.
+    pub(crate) kind: &'static str,
     /// Number of triangles and spheres.
     pub(crate) shapes: usize,
     /// Their area in square units of the file.
     pub(crate) area: f64,
-    /// Radiance emitted to the front.
+    /// Radiance emitted to the front or from the environment; intensity of points and spots;
+    /// irradiance of the sun.
     pub(crate) radiance: Rgb,
-    /// Luminous power: pi times area times luminance.
+    /// Flux into the scene, in luminance and units of the file.
     pub(crate) power: f64,
 }
 
@@ -113,7 +116,7 @@ impl Inventory {
             film: [description.width, description.height],
             max_edges: description.max_edges,
             materials: material_rows(description, scene, &usage),
-            lights: light_rows(description, &usage),
+            lights: light_rows(description, &usage).into_iter().chain(lamp_rows(scene)).collect(),
             features: present,
             switched_off: features.switched_off(),
             warnings: told.chain(scene.warnings().iter().cloned()).collect(),
@@ -213,12 +216,24 @@ fn light_rows(description: &SceneDescription, usage: &[Usage]) -> Vec<LightRow> 
         .filter(|(material, usage)| !material.emission.is_black() && usage.shapes > 0);
     lit.map(|(material, usage)| LightRow {
         material: material.name.clone(),
+        kind: "surface",
         shapes: usage.shapes,
         area: usage.area,
         radiance: material.emission,
         power: PI * usage.area * material.emission.luminance(),
     })
     .collect()
+}
+
+fn lamp_rows(scene: &Scene) -> impl Iterator<Item = LightRow> {
+    scene.lamps().map(|lamp| LightRow {
+        material: lamp.name.to_owned(),
+        kind: lamp.kind,
+        shapes: 0,
+        area: 0.0,
+        radiance: lamp.color,
+        power: lamp.power,
+    })
 }
 
 #[cfg(test)]

@@ -22,6 +22,7 @@ pub const BUILTINS: &[Builtin] = &[
     Builtin { name: "caustic", text: include_str!("../../../scenes/caustic.toml") },
     Builtin { name: "mirror-caustic", text: include_str!("../../../scenes/mirror-caustic.toml") },
     Builtin { name: "door", text: include_str!("../../../scenes/door.toml") },
+    Builtin { name: "terrace", text: include_str!("../../../scenes/terrace.toml") },
     Builtin { name: "furnace", text: include_str!("../../../scenes/furnace.toml") },
 ];
 

@@ -10,9 +10,10 @@ use glam::{DVec3, Vec2, Vec3};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::description::{Coding, Material, Mesh, SceneDescription, Sphere};
+use super::description::{Coding, Material, Mesh, SceneDescription, Sphere, ThinLens};
 use super::diagnostic::{LoadError, Place, Warning};
 use super::file_material::{MaterialEntry, ReadTexture};
+use super::light_entry::LightEntry;
 use super::obj;
 use super::origin::Origins;
 use super::shape::{Cuboid, Quad, Step, Surface};
@@ -44,6 +45,9 @@ pub(super) struct SceneFile {
     /// Analytic spheres: `[[spheres]]`.
     #[serde(default)]
     spheres: Vec<Spanned<SphereEntry>>,
+    /// Lights without a surface: `[[lights]]`.
+    #[serde(default)]
+    lights: Vec<Spanned<LightEntry>>,
     /// Weights and sizes of the mutation strategies, by name: `[strategies]`.
     #[serde(default)]
     strategies: StrategyTable,
@@ -72,7 +76,7 @@ impl Default for Film {
     }
 }
 
-/// `[camera]`: an ideal pinhole.
+/// `[camera]`: an ideal pinhole, or a thin lens.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Camera {
@@ -85,6 +89,10 @@ struct Camera {
     up: DVec3,
     /// Full vertical field of view in degrees, between 0 and 180.
     vertical_fov: f64,
+    /// Radius of the lens; a pinhole without.
+    lens_radius: Option<f64>,
+    /// Distance along the view of the plane that is sharp; default that of the target.
+    focus_distance: Option<f64>,
 }
 
 fn plus_y() -> DVec3 {
@@ -180,7 +188,7 @@ pub(super) fn read(text: &str, file: &Path, name: &str) -> Result<Read, LoadErro
         meshes: Vec::new(),
         spheres: Vec::new(),
         lights: Vec::new(),
-        lens: None,
+        lens: scene.camera.lens(),
     };
     let origins = Origins::of_text(file, text);
     let strategies = strategies::settings(&scene.strategies, text, file);
@@ -193,6 +201,9 @@ pub(super) fn read(text: &str, file: &Path, name: &str) -> Result<Read, LoadErro
     }
     for entry in &scene.spheres {
         out.sphere(text, entry)?;
+    }
+    for entry in &scene.lights {
+        out.light(text, entry)?;
     }
     Ok(out)
 }
@@ -330,6 +341,18 @@ impl Read {
         Ok(surfaces)
     }
 
+    fn light(&mut self, text: &str, entry: &Spanned<LightEntry>) -> Result<(), LoadError> {
+        let place = self.place(text, entry);
+        let folder = self.origins.whole.file.parent().unwrap_or_else(|| Path::new(""));
+        let light = entry.get_ref().light(folder).map_err(|(field, message)| {
+            let message = format!("light `{}`: {message}", entry.get_ref().name);
+            self.error(&place, field, message)
+        })?;
+        self.description.lights.push(light);
+        self.origins.lights.push(place);
+        Ok(())
+    }
+
     fn sphere(&mut self, text: &str, entry: &Spanned<SphereEntry>) -> Result<(), LoadError> {
         let place = self.place(text, entry);
         let sphere = entry.get_ref();
@@ -341,6 +364,15 @@ impl Read {
         });
         self.origins.spheres.push(place);
         Ok(())
+    }
+}
+
+impl Camera {
+    /// The lens, where the radius tells one.
+    fn lens(&self) -> Option<ThinLens> {
+        let to_target = || (self.target - self.origin).length();
+        let focus = self.focus_distance.unwrap_or_else(to_target);
+        self.lens_radius.map(|radius| ThinLens { radius, focus })
     }
 }
 

@@ -38,7 +38,36 @@ pub struct Emission {
     pub hittable: bool,
 }
 
+/// A light without a surface, for people.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LampInfo<'a> {
+    /// Its name in the scene file.
+    pub name: &'a str,
+    /// What it is.
+    pub kind: &'static str,
+    /// Intensity of points and spots, irradiance of the sun, mean radiance of the environment, in
+    /// the units of the file.
+    pub color: Rgb,
+    /// Flux into the scene, in luminance and units of the file.
+    pub power: f64,
+}
+
 impl Scene {
+    /// All lights without a surface.
+    pub fn lamps(&self) -> impl Iterator<Item = LampInfo<'_>> {
+        let bounds = self.emitters.bounds();
+        let area = self.frame().scale * self.frame().scale;
+        self.emitters.lamps().iter().zip(&self.lamp_names).map(move |(lamp, name)| {
+            let per_area = if lamp.is_infinite() { 1.0 } else { area };
+            LampInfo {
+                name,
+                kind: lamp.kind(),
+                color: lamp.color() * (self.radiance_scale / per_area),
+                power: PI * lamp.power(bounds) * self.radiance_scale / area,
+            }
+        })
+    }
+
     /// What a path gets that leaves a light in the unit `direction`. The light is the surface
     /// `primitive`, or, without one, the lamp that `material` names. `None` where there is no light
     /// or where it is dark; the back of a surface is not tested for.

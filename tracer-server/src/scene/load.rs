@@ -177,5 +177,6 @@ fn subject_of(description: &SceneDescription, problem: &Problem) -> String {
         Part::Material(i) => named("material", description.materials.get(i).map(|m| &m.name)),
         Part::Mesh(i) => named("mesh", description.meshes.get(i).map(|m| &m.name)),
         Part::Sphere(i) => named("sphere", description.spheres.get(i).map(|s| &s.name)),
+        Part::Light(i) => named("light", description.lights.get(i).map(|l| &l.name)),
     }
 }

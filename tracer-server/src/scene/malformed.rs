@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use super::builtin::BUILTINS;
 use super::load::{Loaded, load};
-use super::{BsdfDescription, SceneDescription, Wish};
+use super::{BsdfDescription, Glow, SceneDescription, ThinLens, Wish};
 
 /// A smallest scene that loads.
 const GOOD: &str = r#"max_edges = 4
@@ -347,4 +347,57 @@ fn the_unmutated_obj_loads() {
     let triangles: Vec<usize> = loaded.meshes.iter().map(|m| m.triangles.len()).collect();
     assert_eq!(triangles, [2, 1]);
     assert!(is_sound(&loaded));
+}
+
+/// A scene with this entry of `[[lights]]`.
+fn lit_by(light: &str) -> String {
+    format!("{GOOD}\n[[lights]]\nname = \"lamp\"\n{light}\n")
+}
+
+#[test]
+fn lights_without_a_surface_are_read() {
+    let glow = |light: &str| description(&lit_by(light)).lights[0].glow.clone();
+    let point = glow("point = { position = [0, 1, 2], intensity = 3 }");
+    assert!(matches!(point, Glow::Point { intensity, .. } if intensity.g == 3.0), "{point:?}");
+    let spot = glow("spot = { position = [0, 2, 0], target = [0, 0, 0], intensity = [1, 2, 3] }");
+    assert!(matches!(spot, Glow::Spot { cutoff: 30.0, beam: 22.5, .. }), "{spot:?}");
+    let sun = glow("directional = { direction = [0, -2, 0], irradiance = 1 }");
+    assert!(matches!(sun, Glow::Directional { .. }), "{sun:?}");
+    let sky = glow("environment = { rotate = [{ axis = [0, 1, 0], degrees = 90 }] }");
+    let turned =
+        |rotation: glam::DMat3| (rotation * glam::DVec3::Z - glam::DVec3::X).length() < 1e-12;
+    assert!(matches!(sky, Glow::Environment { rotation, .. } if turned(rotation)), "{sky:?}");
+    let lens = GOOD.replace("vertical_fov = 30", "vertical_fov = 30\nlens_radius = 0.1");
+    assert_eq!(
+        description(&lens).lens,
+        Some(ThinLens { radius: 0.1, focus: 5.0 }),
+        "on the target"
+    );
+}
+
+#[test]
+fn bad_lights_and_lenses_are_refused() {
+    let cases = [
+        ("", "exactly one of"),
+        ("point = { position = [0, 0, 0], intensity = 1 }\nenvironment = {}", "exactly one of"),
+        ("point = { position = [0, 0, inf], intensity = 1 }", "not finite"),
+        ("point = { position = [0, 0, 0], intensity = -1 }", "not negative"),
+        ("point = { position = [0, 0, 0], power = 1 }", "power"),
+        ("spot = { position = [0, 0, 0], target = [0, 0, 0], intensity = 1 }", "no length"),
+        ("spot = { position = [0, 0, 0], target = [0, 1, 0], intensity = 1, cutoff = 200 }", "180"),
+        ("spot = { position = [0, 0, 0], target = [0, 1, 0], intensity = 1, beam = 31 }", "beam"),
+        ("directional = { direction = [0, 0, 0], irradiance = 1 }", "no length"),
+        ("environment = { image = \"absent.hdr\" }", "absent.hdr"),
+        ("environment = { rotate = [{ axis = [0, 0, 0], degrees = 1 }] }", "axis"),
+    ];
+    for (light, expected) in cases {
+        let message = load_text("bad.toml", lit_by(light)).expect_err("refused");
+        assert!(message.contains(expected) && message.contains("bad.toml:3"), "{light}: {message}");
+    }
+    let two = lit_by("environment = {}\n[[lights]]\nname = \"second\"\nenvironment = {}");
+    let message = load_text("two.toml", two).expect_err("refused");
+    assert!(message.contains("one only") && message.contains("second"), "{message}");
+    let lens = GOOD.replace("vertical_fov = 30", "vertical_fov = 30\nlens_radius = 0");
+    let message = load_text("lens.toml", lens).expect_err("refused");
+    assert!(message.contains("lens_radius") && message.contains("positive"), "{message}");
 }

@@ -51,15 +51,19 @@ pub(super) fn check_material(material: &Material, textures: usize) -> Result<(),
             check_roughness(roughness.into(), textures)?;
         }
     }
-    let emission = material.emission;
-    if !(emission.is_physical() && emission.max_channel() <= MAX_RADIANCE) {
-        let message = format!(
-            "{} must have all channels finite, not negative, and at most {MAX_RADIANCE:e}",
-            show(emission)
-        );
-        return Err(("emission", message));
+    check_emission("emission", material.emission)
+}
+
+/// That a colour can be emitted.
+pub(super) fn check_emission(field: &'static str, color: Rgb) -> Result<(), Fault> {
+    if color.is_physical() && color.max_channel() <= MAX_RADIANCE {
+        return Ok(());
     }
-    Ok(())
+    let message = format!(
+        "{} must have all channels finite, not negative, and at most {MAX_RADIANCE:e}",
+        show(color)
+    );
+    Err((field, message))
 }
 
 fn check_share(field: &'static str, color: Rgb) -> Result<(), Fault> {

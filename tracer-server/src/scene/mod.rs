@@ -18,6 +18,8 @@ pub(crate) mod fixtures;
 mod hash;
 mod lamp;
 mod light;
+mod light_check;
+mod light_entry;
 pub mod load;
 #[cfg(test)]
 mod malformed;
@@ -59,7 +61,7 @@ pub use description::{
     SceneDescription, Sphere, Texture, ThinLens,
 };
 pub use features::SceneFeatures;
-pub use light::{Emission, LightSample};
+pub use light::{Emission, LampInfo, LightSample};
 pub use sky::SkyImage;
 pub use strategies::{StrategySetting, Wish};
 pub use surface::NO_PRIMITIVE;

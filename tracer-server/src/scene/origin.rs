@@ -18,6 +18,8 @@ pub(super) struct Origins {
     pub(super) meshes: Vec<Place>,
     /// One place a sphere.
     pub(super) spheres: Vec<Place>,
+    /// One place a light without a surface.
+    pub(super) lights: Vec<Place>,
     /// The scene file's text, where it is TOML: it tells the line of a field.
     text: String,
 }
@@ -36,6 +38,7 @@ impl Origins {
             materials: Vec::new(),
             meshes: Vec::new(),
             spheres: Vec::new(),
+            lights: Vec::new(),
             text: String::new(),
         }
     }
@@ -50,6 +53,7 @@ impl Origins {
             Part::Material(index) => listed(&self.materials, index),
             Part::Mesh(index) => listed(&self.meshes, index),
             Part::Sphere(index) => listed(&self.spheres, index),
+            Part::Light(index) => listed(&self.lights, index),
         };
         match entry {
             Some(place) => self.field(&place, field),

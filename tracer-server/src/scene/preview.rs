@@ -68,14 +68,13 @@ impl Scene {
 
     /// The surfaces' materials, then the lights without a surface.
     fn material_infos(&self) -> impl Iterator<Item = MaterialInfo> {
-        let lamps =
-            self.emitters.lamps().iter().zip(&self.lamp_names).map(|(lamp, name)| MaterialInfo {
-                name: name.clone(),
-                model: lamp.kind().to_owned(),
-                color: Rgb::BLACK,
-                emission: lamp.color() * self.radiance_scale,
-                transparent: false,
-            });
+        let lamps = self.lamps().map(|lamp| MaterialInfo {
+            name: lamp.name.to_owned(),
+            model: lamp.kind.to_owned(),
+            color: Rgb::BLACK,
+            emission: lamp.color,
+            transparent: false,
+        });
         self.surfaces.iter().map(|s| self.material_info(s)).chain(lamps)
     }
 

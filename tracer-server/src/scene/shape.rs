@@ -108,6 +108,16 @@ pub(super) struct Rotation {
     pub(super) degrees: f64,
 }
 
+impl Rotation {
+    /// The turn as a matrix, or what is amiss.
+    pub(super) fn matrix(self) -> Result<DMat3, &'static str> {
+        let axis = self.axis.try_normalize().filter(|_| self.degrees.is_finite());
+        let axis =
+            axis.ok_or("rotate needs an axis that is not zero and a finite angle in degrees")?;
+        Ok(DMat3::from_axis_angle(axis, self.degrees.to_radians()))
+    }
+}
+
 /// Scale factors.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(untagged, expecting = "a number, or three numbers [x, y, z]")]
@@ -124,11 +134,8 @@ impl Surface {
         for step in steps {
             match step {
                 Step::Translate(by) => self.map(|p| p + by),
-                Step::Rotate(Rotation { axis, degrees }) => {
-                    let axis = axis.try_normalize().filter(|_| degrees.is_finite()).ok_or(
-                        "rotate needs an axis that is not zero and a finite angle in degrees",
-                    )?;
-                    let matrix = DMat3::from_axis_angle(axis, degrees.to_radians());
+                Step::Rotate(rotation) => {
+                    let matrix = rotation.matrix()?;
                     self.map(|p| matrix * p);
                     self.map_normals(|n| matrix * n);
                 }

@@ -3,9 +3,10 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use image::{ImageReader, Limits};
+use image::{DynamicImage, ImageReader, Limits};
 
 use super::description::{Coding, Texture};
+use super::sky::SkyImage;
 use super::text::read_bytes;
 
 /// The most bytes of an image file that are read.
@@ -17,6 +18,31 @@ const MAX_MEMORY: u64 = 1 << 30;
 
 /// Reads a PNG or JPEG image.
 pub(super) fn read_texture(path: &Path, coding: Coding) -> Result<Texture, String> {
+    let image = decode(path)?.into_rgb8();
+    Ok(Texture {
+        name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        width: image.width(),
+        height: image.height(),
+        texels: image.pixels().map(|pixel| pixel.0).collect(),
+        coding,
+    })
+}
+
+/// Reads the image of an environment: `OpenEXR` and Radiance HDR as they are, PNG and JPEG as sRGB.
+pub(super) fn read_sky(path: &Path) -> Result<SkyImage, String> {
+    let image = decode(path)?;
+    let linear = matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
+    let (width, height) = (image.width() as usize, image.height() as usize);
+    let texels = if linear {
+        image.into_rgb32f().pixels().map(|pixel| pixel.0).collect()
+    } else {
+        let decode = |value: u8| Coding::Srgb.decode(value) as f32;
+        image.into_rgb8().pixels().map(|pixel| pixel.0.map(decode)).collect()
+    };
+    Ok(SkyImage { width, height, texels })
+}
+
+fn decode(path: &Path) -> Result<DynamicImage, String> {
     let bytes = read_bytes(path, MAX_BYTES).map_err(|error| error.to_string())?;
     let mut reader = ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()
@@ -27,17 +53,10 @@ pub(super) fn read_texture(path: &Path, coding: Coding) -> Result<Texture, Strin
     limits.max_alloc = Some(MAX_MEMORY);
     reader.limits(limits);
     let image = reader.decode().map_err(|error| format!("{}: {error}", path.display()))?;
-    let image = image.into_rgb8();
     if image.width() == 0 || image.height() == 0 {
         return Err(format!("{}: the image has no pixels", path.display()));
     }
-    Ok(Texture {
-        name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-        width: image.width(),
-        height: image.height(),
-        texels: image.pixels().map(|pixel| pixel.0).collect(),
-        coding,
-    })
+    Ok(image)
 }
 
 #[cfg(test)]

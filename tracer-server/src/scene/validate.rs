@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use super::MAX_EDGES;
 use super::description::{Mesh, SceneDescription, Sphere};
+use super::light_check::check_lights;
 use super::material_check::{check_material, check_texture};
 
 /// Coordinates beyond this are a mistake: squares and products of them stay far inside an `f64`,
@@ -34,6 +35,8 @@ pub(super) enum Part {
     Mesh(usize),
     /// A sphere, by index.
     Sphere(usize),
+    /// A light without a surface, by index.
+    Light(usize),
 }
 
 /// What is wrong with a description.
@@ -48,7 +51,7 @@ pub(super) struct Problem {
 }
 
 impl Problem {
-    fn new(part: Part, field: &'static str, message: impl Into<String>) -> Self {
+    pub(super) fn new(part: Part, field: &'static str, message: impl Into<String>) -> Self {
         Self { part, field, message: message.into() }
     }
 }
@@ -81,6 +84,7 @@ pub(super) fn validate(scene: &mut SceneDescription) -> Result<Vec<Dropped>, Pro
         check_sphere(sphere, materials)
             .map_err(|(field, m)| Problem::new(Part::Sphere(i), field, m))?;
     }
+    check_lights(scene)?;
     let count = scene.meshes.iter().map(|m| m.triangles.len()).sum::<usize>();
     if count > MAX_TRIANGLES {
         let message = format!("the scene has {count} triangles; at most {MAX_TRIANGLES} are read");
@@ -123,6 +127,14 @@ fn check_camera(scene: &SceneDescription) -> Result<(), Problem> {
     let pose = &scene.camera;
     for (field, point) in [("origin", pose.origin), ("target", pose.target), ("up", pose.up)] {
         check_point(point).map_err(|m| Problem::new(Part::Camera, field, m))?;
+    }
+    if let Some(lens) = scene.lens {
+        for (field, length) in [("lens_radius", lens.radius), ("focus_distance", lens.focus)] {
+            if !(length > 0.0 && length <= MAX_COORDINATE) {
+                let message = format!("{length} must be positive and at most {MAX_COORDINATE:e}");
+                return Err(Problem::new(Part::Camera, field, message));
+            }
+        }
     }
     Camera::new(pose, scene.width, scene.height)
         .map(|_| ())
@@ -257,7 +269,8 @@ fn check_whole(scene: &SceneDescription, triangles: usize) -> Result<(), Problem
         scene.materials.get(usize::from(material)).is_some_and(|m| !m.emission.is_black())
     };
     let lit = scene.meshes.iter().any(|mesh| mesh.materials.iter().any(emits))
-        || scene.spheres.iter().any(|sphere| emits(&sphere.material));
+        || scene.spheres.iter().any(|sphere| emits(&sphere.material))
+        || scene.lights.iter().any(|light| !light.glow.is_dark());
     if lit {
         return Ok(());
     }
@@ -268,7 +281,7 @@ fn check_whole(scene: &SceneDescription, triangles: usize) -> Result<(), Problem
             material.name
         ),
         None => "the scene has no light: give some surface a material that emits (`emission` in \
-                 .toml, `Ke` in .mtl)"
+                 .toml, `Ke` in .mtl), or add `[[lights]]`"
             .to_owned(),
     };
     Err(Problem::new(Part::Scene, "", message))
