@@ -105,6 +105,12 @@ impl Inventory {
         if features.one_sided {
             present.push("one-sided surfaces: black on their back");
         }
+        if features.environment {
+            present.push("environment: a ray that leaves the scene meets light");
+        }
+        if features.aperture {
+            present.push("aperture: chains move the lens point too");
+        }
         let told = loaded.warnings.iter().map(ToString::to_string);
         Self {
             name: description.name.clone(),
@@ -251,7 +257,7 @@ mod tests {
         let light = &inventory.lights[0];
         assert!((light.area - 24.0).abs() < 1e-12, "six sides of four: {}", light.area);
         assert!((light.power - PI * 12.0).abs() < 1e-9, "radiance one half: {}", light.power);
-        assert!(inventory.features.is_empty() && inventory.switched_off.len() == 7);
+        assert!(inventory.features.is_empty() && inventory.switched_off.len() == 9);
     }
 
     #[test]
@@ -261,6 +267,6 @@ mod tests {
         let inventory = Inventory::new(&loaded, &scene);
         let glass = inventory.materials.iter().find(|row| row.model == "dielectric");
         assert_eq!(glass.map(|row| (row.eta, row.shapes)), Some((Some(1.5), 1)));
-        assert_eq!(inventory.switched_off.len(), 5, "{:?}", inventory.switched_off);
+        assert_eq!(inventory.switched_off.len(), 7, "{:?}", inventory.switched_off);
     }
 }

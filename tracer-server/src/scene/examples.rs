@@ -6,6 +6,7 @@ use std::time::Instant;
 use common::Rgb;
 
 use super::BsdfDescription;
+use super::Scene;
 use super::builtin::{BUILTINS, Builtin};
 use super::load::{Loaded, load};
 
@@ -57,8 +58,14 @@ fn the_example_of_the_scenes_readme_loads() {
     let write = |name: &str, text: &str| std::fs::write(directory.path().join(name), text);
     write("scene.toml", example.expect("a block of TOML")).expect("written");
     write("statue.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
+    image::Rgb32FImage::from_pixel(4, 2, [1.0, 2.0, 3.0].into())
+        .save(directory.path().join("sky.hdr"))
+        .expect("written");
     let loaded = load(directory.path().to_str().expect("UTF-8")).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(triangles(&loaded), 2 + 12 + 1 + 1);
+    let scene = Scene::new(&loaded.description).expect("a sound scene");
+    let sky = scene.lamps().find(|lamp| lamp.kind == "environment").expect("a sky");
+    assert!((sky.color.b - 3.0).abs() < 0.02, "{sky:?}");
 }
 
 /// The folder of scenes made by others, or `None` with a printed line.
