@@ -257,7 +257,7 @@ mod tests {
         let light = &inventory.lights[0];
         assert!((light.area - 24.0).abs() < 1e-12, "six sides of four: {}", light.area);
         assert!((light.power - PI * 12.0).abs() < 1e-9, "radiance one half: {}", light.power);
-        assert!(inventory.features.is_empty() && inventory.switched_off.len() == 9);
+        assert!(inventory.features.is_empty() && inventory.switched_off.len() == 7);
     }
 
     #[test]
@@ -267,6 +267,6 @@ mod tests {
         let inventory = Inventory::new(&loaded, &scene);
         let glass = inventory.materials.iter().find(|row| row.model == "dielectric");
         assert_eq!(glass.map(|row| (row.eta, row.shapes)), Some((Some(1.5), 1)));
-        assert_eq!(inventory.switched_off.len(), 7, "{:?}", inventory.switched_off);
+        assert_eq!(inventory.switched_off.len(), 5, "{:?}", inventory.switched_off);
     }
 }
