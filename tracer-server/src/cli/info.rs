@@ -24,7 +24,7 @@ Examples:
   tracer-server info models/CornellBox-Water.obj
   tracer-server info scenes/veach-ajar --json")]
 pub struct InfoArgs {
-    /// A built-in scene, a .toml or .obj file, or a directory that holds one.
+    /// A built-in scene, a .toml, .obj or Mitsuba .xml file, or a directory that holds one.
     pub scene: String,
     /// Print JSON instead of tables.
     #[arg(long)]

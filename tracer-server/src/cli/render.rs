@@ -34,7 +34,7 @@ Examples:
   tracer-server render caustic -o plain.exr --without caustic,multi-chain --tune lens.radius=0.5..8
   tracer-server render scenes/room.toml -o room.exr --width 640 --height 480 --stats-json room.json")]
 pub struct RenderArgs {
-    /// A built-in scene, a .toml or .obj file, or a directory that holds one.
+    /// A built-in scene, a .toml, .obj or Mitsuba .xml file, or a directory that holds one.
     pub scene: String,
     /// Where to put the image: .exr keeps linear radiance, .png is exposed to be looked at.
     #[arg(short, long, value_name = "FILE")]

@@ -25,7 +25,7 @@ Examples:
   tracer-server serve door --strategies bidirectional=0.7,lens=0.3
   tracer-server serve scenes/room.toml --listen 127.0.0.1:0 --width 640 --height 480")]
 pub struct ServeArgs {
-    /// A built-in scene, a .toml or .obj file, or a directory that holds one.
+    /// A built-in scene, a .toml, .obj or Mitsuba .xml file, or a directory that holds one.
     #[arg(default_value = "cornell")]
     pub scene: String,
     /// Where to listen; port 0 takes any that is free.

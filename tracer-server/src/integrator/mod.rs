@@ -8,3 +8,5 @@ pub use path_tracer::PathTracer;
 
 #[cfg(test)]
 mod laws;
+#[cfg(test)]
+mod peers;

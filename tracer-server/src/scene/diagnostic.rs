@@ -86,7 +86,7 @@ pub enum LoadError {
         closest: Option<&'static str>,
     },
     /// A file type that Lvis does not read.
-    #[error("{}: {kind} scenes are not supported yet; use a .toml or an .obj file", path.display())]
+    #[error("{}: {kind} scenes are not supported; use a .toml, .obj or Mitsuba .xml file", path.display())]
     Unsupported {
         /// The file.
         path: PathBuf,
@@ -140,7 +140,7 @@ fn not_found(spec: &str, closest: Option<&str>) -> String {
 
 fn ambiguous(path: &Path, found: &[String]) -> String {
     if found.is_empty() {
-        format!("{}: this directory holds no .toml or .obj scene", path.display())
+        format!("{}: this directory holds no .toml, .xml or .obj scene", path.display())
     } else {
         format!(
             "{}: this directory holds {} scenes; name one of them: {}",

@@ -11,7 +11,7 @@ use super::origin::Origins;
 use super::strategies::StrategySetting;
 use super::text::read_utf8;
 use super::validate::{Part, Problem, validate};
-use super::{obj, viewpoint};
+use super::{mitsuba, obj, viewpoint};
 
 /// The most bytes of a TOML scene file that are read.
 const MAX_TOML_BYTES: u64 = 64 << 20;
@@ -29,7 +29,8 @@ pub struct Loaded {
     pub strategies: Vec<StrategySetting>,
 }
 
-/// Loads a built-in scene by name, a `.toml` or `.obj` file, or a directory that holds one.
+/// Loads a built-in scene by name, a `.toml`, `.obj` or Mitsuba `.xml` file, or a directory that
+/// holds one.
 ///
 /// A built-in name comes first; `./NAME` always means a file.
 pub fn load(spec: &str) -> Result<Loaded, LoadError> {
@@ -48,6 +49,7 @@ pub fn load(spec: &str) -> Result<Loaded, LoadError> {
             file::read(text.trim_start_matches('\u{feff}'), &path, &stem(&path))?
         }
         Format::Obj => read_obj(&path)?,
+        Format::Mitsuba => mitsuba::read(&path, &stem(&path))?,
     })
 }
 
@@ -55,6 +57,7 @@ pub fn load(spec: &str) -> Result<Loaded, LoadError> {
 enum Format {
     Toml,
     Obj,
+    Mitsuba,
 }
 
 fn format_of(path: &Path) -> Result<Format, LoadError> {
@@ -62,7 +65,7 @@ fn format_of(path: &Path) -> Result<Format, LoadError> {
     let kind = match extension.as_str() {
         "toml" => return Ok(Format::Toml),
         "obj" => return Ok(Format::Obj),
-        "xml" => "Mitsuba XML".to_owned(),
+        "xml" => return Ok(Format::Mitsuba),
         "gltf" | "glb" => "glTF".to_owned(),
         "" => "extensionless".to_owned(),
         other => format!(".{other}"),
@@ -74,27 +77,28 @@ fn stem(path: &Path) -> String {
     path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
-/// The scene file of a directory: its only `.toml`, or else its only `.obj`.
+/// The scene file of a directory: its only `.toml`, or else its only `.xml`, or else its only
+/// `.obj`.
 fn only_scene(directory: &Path) -> Result<PathBuf, LoadError> {
     let unreadable = |source| LoadError::Unreadable { path: directory.to_path_buf(), source };
-    let (mut scenes, mut meshes) = (Vec::new(), Vec::new());
+    let mut found: Vec<(Format, PathBuf)> = Vec::new();
     for entry in std::fs::read_dir(directory).map_err(unreadable)?.take(MAX_ENTRIES) {
         let path = entry.map_err(unreadable)?.path();
-        match format_of(&path) {
-            Ok(Format::Toml) => scenes.push(path),
-            Ok(Format::Obj) => meshes.push(path),
-            Err(_) => {}
+        if let Ok(format) = format_of(&path) {
+            found.push((format, path));
         }
     }
-    match (scenes.as_slice(), meshes.as_slice()) {
-        ([scene], _) => return Ok(scene.clone()),
-        ([], [mesh]) => return Ok(mesh.clone()),
-        _ => {}
+    for format in [Format::Toml, Format::Mitsuba, Format::Obj] {
+        let mut scenes = found.iter().filter(|(found, _)| *found == format);
+        match (scenes.next(), scenes.next()) {
+            (Some((_, scene)), None) => return Ok(scene.clone()),
+            (None, _) => {}
+            (Some(_), Some(_)) => break,
+        }
     }
-    let mut found: Vec<String> = scenes
+    let mut found: Vec<String> = found
         .iter()
-        .chain(&meshes)
-        .filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned()))
+        .filter_map(|(_, path)| Some(path.file_name()?.to_string_lossy().into_owned()))
         .collect();
     found.sort();
     Err(LoadError::Directory { path: directory.to_path_buf(), found })

@@ -165,7 +165,11 @@ pub enum Coding {
 impl Coding {
     /// The number in [0, 1] that a code stands for.
     pub fn decode(self, code: u8) -> f64 {
-        let value = f64::from(code) / 255.0;
+        self.decode_share(f64::from(code) / 255.0)
+    }
+
+    /// The number that a share of the largest code stands for.
+    pub fn decode_share(self, value: f64) -> f64 {
         match self {
             Self::Linear => value,
             Self::Srgb if value <= 0.04045 => value / 12.92,

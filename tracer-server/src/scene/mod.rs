@@ -25,6 +25,7 @@ pub mod load;
 mod malformed;
 mod material;
 mod material_check;
+mod mitsuba;
 mod mtl;
 mod mtl_text;
 mod obj;

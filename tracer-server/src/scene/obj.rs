@@ -73,6 +73,21 @@ pub(super) fn read(path: &Path) -> Result<ObjScene, LoadError> {
     Ok(scene)
 }
 
+/// Reads the surfaces of an OBJ file alone: whoever places them says what they are made of.
+pub(super) fn read_geometry(path: &Path) -> Result<(Vec<Mesh>, Vec<Warning>), LoadError> {
+    let text = read_lossy(path, MAX_OBJ_BYTES)?;
+    let mut obj = obj_text::scan(&text, path)?;
+    drop(text);
+    let options = tobj::LoadOptions { triangulate: true, ..tobj::LoadOptions::default() };
+    // The scan takes the names of libraries out of the text, so that none is asked for.
+    let no_library = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
+    let (models, _) = tobj::load_obj_buf(&mut obj.text.as_bytes(), &options, no_library)
+        .map_err(|error| unforeseen(path, &error))?;
+    let mut scene = ObjScene::default();
+    add_meshes(path, models, &mut scene)?;
+    Ok((scene.meshes, std::mem::take(&mut obj.warnings)))
+}
+
 /// The parser met what the scan before it let pass.
 fn unforeseen(path: &Path, error: &dyn Display) -> LoadError {
     Place::file(path).error(format!("the OBJ parser refuses this file: {error}"))

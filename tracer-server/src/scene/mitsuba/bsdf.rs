@@ -1,0 +1,169 @@
+//! Scattering models, as far as the tracer has them.
+
+use common::Rgb;
+
+use super::document::Element;
+use super::palette::Palette;
+use crate::scene::description::{BsdfDescription, ColorInput, Material};
+use crate::scene::diagnostic::LoadError;
+
+/// The deepest that models may be nested in one another.
+const MAX_NESTING: usize = 16;
+/// Diffuse reflectance where a scene does not say.
+const DEFAULT_REFLECTANCE: f64 = 0.5;
+
+/// Indices of refraction that scenes refer to by name.
+const INDICES: &[(&str, f64)] = &[
+    ("vacuum", 1.0),
+    ("helium", 1.000036),
+    ("hydrogen", 1.000132),
+    ("air", 1.000277),
+    ("carbon dioxide", 1.00045),
+    ("water", 1.333),
+    ("acetone", 1.36),
+    ("ethanol", 1.361),
+    ("carbon tetrachloride", 1.461),
+    ("glycerol", 1.4729),
+    ("benzene", 1.501),
+    ("silicone oil", 1.52045),
+    ("bromine", 1.661),
+    ("water ice", 1.31),
+    ("fused quartz", 1.458),
+    ("pyrex", 1.47),
+    ("acrylic glass", 1.49),
+    ("polypropylene", 1.49),
+    ("bk7", 1.5046),
+    ("sodium chloride", 1.544),
+    ("amber", 1.55),
+    ("pet", 1.575),
+    ("diamond", 2.419),
+];
+
+/// A model as it is read, before it becomes a material.
+#[derive(Clone, Copy, Debug)]
+struct Model {
+    bsdf: BsdfDescription,
+    two_sided: bool,
+}
+
+/// Reads a `bsdf`; `None` for a surface that nothing sees.
+pub(super) fn read(
+    element: Element<'_>,
+    palette: &mut Palette,
+) -> Result<Option<Material>, LoadError> {
+    let model = Reader { palette }.model(element, 0)?;
+    Ok(model.map(|Model { bsdf, two_sided }| Material {
+        two_sided,
+        ..Material::new(element.label(), bsdf)
+    }))
+}
+
+/// The material of a shape without a `bsdf`.
+pub(super) fn default_material(emits: bool) -> Material {
+    let reflectance = if emits { Rgb::BLACK } else { Rgb::grey(DEFAULT_REFLECTANCE) };
+    let bsdf = BsdfDescription::Lambert { reflectance: reflectance.into() };
+    Material { two_sided: false, ..Material::new("(default)", bsdf) }
+}
+
+struct Reader<'p> {
+    palette: &'p mut Palette,
+}
+
+impl Reader<'_> {
+    fn model(&mut self, element: Element<'_>, depth: usize) -> Result<Option<Model>, LoadError> {
+        if depth > MAX_NESTING {
+            let message = format!("nested more than {MAX_NESTING} deep, or within itself");
+            return Err(element.error(message));
+        }
+        let one_sided = |bsdf| Ok(Some(Model { bsdf, two_sided: false }));
+        match element.plugin()?.as_str() {
+            "diffuse" | "roughdiffuse" => {
+                let reflectance = self.color_input(element, "reflectance")?;
+                one_sided(BsdfDescription::Lambert { reflectance })
+            }
+            "dielectric" | "thindielectric" | "roughdielectric" => {
+                one_sided(self.dielectric(element)?)
+            }
+            "conductor" | "roughconductor" => one_sided(self.conductor(element)?),
+            "plastic" | "roughplastic" => {
+                let reflectance = self.color_input(element, "diffuse_reflectance")?;
+                self.tell(element, "its coat is not modelled: it becomes diffuse");
+                one_sided(BsdfDescription::Lambert { reflectance })
+            }
+            "twosided" => {
+                let inner = self.nested(element, depth)?;
+                Ok(inner.map(|model| Model { two_sided: true, ..model }))
+            }
+            "mask" | "bumpmap" | "normalmap" | "bump" => {
+                self.tell(element, "has no effect; what is nested in it has");
+                self.nested(element, depth)
+            }
+            "blendbsdf" | "mixturebsdf" => {
+                self.tell(element, "only the first of the models in it has an effect");
+                self.nested(element, depth)
+            }
+            "null" => Ok(None),
+            _ => Err(element.error(
+                "no such scattering model here; those known: diffuse, dielectric, conductor, \
+                 plastic, their rough forms, thindielectric, twosided, mask, bumpmap, normalmap, \
+                 blendbsdf, mixturebsdf, null",
+            )),
+        }
+    }
+
+    fn tell(&mut self, element: Element<'_>, message: &str) {
+        self.palette.warnings.push(element.warning(message));
+    }
+
+    fn nested(&mut self, element: Element<'_>, depth: usize) -> Result<Option<Model>, LoadError> {
+        let inner = element.objects("bsdf")?;
+        let first = inner
+            .first()
+            .ok_or_else(|| element.error("a `<bsdf>` must be nested in it, or a `<ref>` to one"))?;
+        self.model(*first, depth + 1)
+    }
+
+    /// A colour or a texture; the default of diffuse surfaces where it is absent.
+    fn color_input(&mut self, element: Element<'_>, name: &str) -> Result<ColorInput, LoadError> {
+        match element.property(name)? {
+            None => Ok(Rgb::grey(DEFAULT_REFLECTANCE).into()),
+            Some(value) if value.tag() == "texture" => self.palette.texture(value),
+            Some(value) => value.as_color().map(ColorInput::from),
+        }
+    }
+
+    fn dielectric(&mut self, element: Element<'_>) -> Result<BsdfDescription, LoadError> {
+        let inside = index(element, "int_ior", "bk7")?;
+        let outside = index(element, "ext_ior", "air")?;
+        Ok(BsdfDescription::Dielectric {
+            eta: inside / outside,
+            reflectance: element.color("specular_reflectance")?.unwrap_or(Rgb::WHITE),
+            transmittance: element.color("specular_transmittance")?.unwrap_or(Rgb::WHITE),
+        })
+    }
+
+    fn conductor(&mut self, element: Element<'_>) -> Result<BsdfDescription, LoadError> {
+        let reflectance = element.color("specular_reflectance")?.unwrap_or(Rgb::WHITE);
+        Ok(BsdfDescription::Mirror { reflectance })
+    }
+}
+
+/// An index of refraction, as a number or by name.
+fn index(element: Element<'_>, name: &str, default: &str) -> Result<f64, LoadError> {
+    let material = match element.property(name)? {
+        Some(value) if value.tag() != "string" => {
+            let number = element.number(name)?;
+            return number.filter(|&n| n > 0.0).ok_or_else(|| {
+                value.error("an index of refraction is a positive number (glass is 1.5)")
+            });
+        }
+        Some(value) => value.needed("value")?,
+        None => default.to_owned(),
+    };
+    let found = INDICES.iter().find(|(known, _)| *known == material.trim().to_ascii_lowercase());
+    found.map(|&(_, index)| index).ok_or_else(|| {
+        let known: Vec<&str> = INDICES.iter().map(|(known, _)| *known).collect();
+        let message = format!("{name}: no medium of that name; those known: {}", known.join(", "));
+        element.error(message)
+    })
+}

@@ -1,0 +1,223 @@
+//! Scenes in the XML format of the renderer Mitsuba, versions 0.6 and 3 [Jakob 2010; Jakob et al. 2022].
+//!
+//! What is understood becomes a [`SceneDescription`]; what is not is told, element by element.
+
+mod bsdf;
+mod document;
+#[cfg(test)]
+mod laws;
+mod mesh;
+mod palette;
+mod ply;
+mod sensor;
+mod shape;
+mod transform;
+mod value;
+
+use std::path::Path;
+
+use common::{CameraPose, Rgb};
+use glam::DVec3;
+
+use super::description::{SceneDescription, Sphere};
+use super::diagnostic::{LoadError, Warning};
+use super::file::{DEFAULT_MAX_EDGES, Read};
+use super::origin::Origins;
+use super::text::read_utf8;
+use super::{MAX_EDGES, viewpoint};
+use document::{Element, Source};
+use palette::Palette;
+use shape::{Geometry, Shape};
+
+/// The most bytes of a scene file that are read.
+const MAX_XML_BYTES: u64 = 64 << 20;
+
+/// Reads a scene file and the files that it names, relative to it.
+pub(super) fn read(path: &Path, name: &str) -> Result<Read, LoadError> {
+    let text = read_utf8(path, MAX_XML_BYTES)?;
+    let source = Source::parse(text.trim_start_matches('\u{feff}'), path)?;
+    let root = source.root().read();
+    if root.tag() != "scene" {
+        return Err(root.error("no scene: the outermost element must be `<scene>`"));
+    }
+    if let Some(medium) = root.find("medium") {
+        let message = "participating media are not modelled, and without them the picture would \
+                       be another one; remove every `<medium>` to see the surfaces alone";
+        return Err(medium.error(message));
+    }
+    let mut loader = Loader::new(path, name);
+    loader.scene(root)?;
+    loader.warnings.extend(source.unread());
+    Ok(loader.finish())
+}
+
+/// A scene as far as it has been read.
+struct Loader {
+    description: SceneDescription,
+    origins: Origins,
+    palette: Palette,
+    warnings: Vec<Warning>,
+}
+
+impl Loader {
+    fn new(path: &Path, name: &str) -> Self {
+        let view = viewpoint::guess(&[]);
+        let description = SceneDescription {
+            name: name.to_owned(),
+            camera: view.camera,
+            width: view.width,
+            height: view.height,
+            max_edges: DEFAULT_MAX_EDGES,
+            materials: Vec::new(),
+            textures: Vec::new(),
+            meshes: Vec::new(),
+            spheres: Vec::new(),
+        };
+        let origins = Origins::of_file(path);
+        Self { description, origins, palette: Palette::default(), warnings: Vec::new() }
+    }
+
+    fn scene(&mut self, root: Element<'_>) -> Result<(), LoadError> {
+        self.integrator(root)?;
+        for shape in root.objects("shape")? {
+            self.shape(shape)?;
+        }
+        self.sensor(root)
+    }
+
+    /// The limit on the length of paths, in edges from light to camera, which is the renderer's own
+    /// way to count; how to sample is the user's choice and not the scene's.
+    fn integrator(&mut self, root: Element<'_>) -> Result<(), LoadError> {
+        let Some(integrator) = root.objects("integrator")?.first().copied() else { return Ok(()) };
+        // An integrator may be wrapped in another one.
+        let inner = integrator.objects("integrator")?.first().copied().unwrap_or(integrator);
+        let edges = inner.integer("max_depth")?.unwrap_or(-1);
+        match usize::try_from(edges) {
+            Ok(edges) if edges > MAX_EDGES => {
+                let message = format!("max_depth is {edges}; {MAX_EDGES} is used");
+                self.warnings.push(inner.warning(message));
+                self.description.max_edges = MAX_EDGES;
+            }
+            Ok(edges) => self.description.max_edges = edges,
+            Err(_) => {
+                let message = format!("paths without an end: {DEFAULT_MAX_EDGES} edges are used");
+                self.warnings.push(inner.warning(message));
+            }
+        }
+        Ok(())
+    }
+
+    fn sensor(&mut self, root: Element<'_>) -> Result<(), LoadError> {
+        let sensors = root.objects("sensor")?;
+        let view = if let Some(&sensor) = sensors.first() {
+            let read = sensor::read(sensor)?;
+            self.warnings.extend(read.warnings);
+            if self.is_clipped(&read.view.camera, read.clip) {
+                let message = "near_clip and far_clip are ignored: what lies outside is shown too";
+                self.warnings.push(sensor.warning(message));
+            }
+            self.origins.camera = sensor.place();
+            read.view
+        } else {
+            let message = "no `<sensor>`: the point of view is a guess";
+            self.warnings.push(root.warning(message));
+            viewpoint::guess(&self.description.meshes)
+        };
+        for other in sensors.iter().skip(1) {
+            self.warnings.push(other.warning("only the first sensor is used"));
+        }
+        self.description.camera = view.camera;
+        self.description.width = view.width;
+        self.description.height = view.height;
+        Ok(())
+    }
+
+    /// True when some corner before the camera lies outside the depths of `clip`.
+    fn is_clipped(&self, camera: &CameraPose, clip: [f64; 2]) -> bool {
+        let forward = (camera.target - camera.origin).normalize_or_zero();
+        let outside = |point: DVec3, reach: f64| {
+            let depth = (point - camera.origin).dot(forward);
+            depth + reach > 0.0 && (depth - reach < clip[0] || depth + reach > clip[1])
+        };
+        let description = &self.description;
+        let corners = description.meshes.iter().flat_map(|mesh| &mesh.positions);
+        corners.into_iter().any(|&corner| outside(corner, 0.0))
+            || description.spheres.iter().any(|ball| outside(ball.centre, ball.radius))
+    }
+
+    fn shape(&mut self, element: Element<'_>) -> Result<(), LoadError> {
+        let Shape { name, geometry, warnings } = shape::read(element)?;
+        self.warnings.extend(warnings);
+        let Some(material) = self.material_of(element, &name)? else {
+            self.warnings.push(element.warning("left out, since nothing sees it"));
+            return Ok(());
+        };
+        match geometry {
+            Geometry::Meshes(meshes) => {
+                for mut mesh in meshes {
+                    mesh.materials = vec![material; mesh.triangles.len()];
+                    self.description.meshes.push(mesh);
+                    self.origins.meshes.push(element.place());
+                }
+            }
+            Geometry::Sphere { centre, radius, inwards } => {
+                let material = if inwards { self.inside_out(element, material)? } else { material };
+                self.description.spheres.push(Sphere { name, centre, radius, material });
+                self.origins.spheres.push(element.place());
+            }
+        }
+        Ok(())
+    }
+
+    /// The index of a shape's material; `None` for a surface that nobody sees.
+    fn material_of(&mut self, shape: Element<'_>, name: &str) -> Result<Option<u16>, LoadError> {
+        let emission = emission_of(shape)?;
+        let models = shape.objects("bsdf")?;
+        let base = match models.first() {
+            Some(&model) => match self.palette.material(model)? {
+                None => return Ok(None),
+                index => index,
+            },
+            None => None,
+        };
+        let place = shape.place();
+        match (base, emission) {
+            (base, Some(emission)) => self.palette.lamp(base, name, emission, place).map(Some),
+            (Some(index), None) => Ok(Some(index)),
+            (None, None) => self.palette.default_material(place).map(Some),
+        }
+    }
+
+    /// The material of a sphere whose front side is its inside.
+    fn inside_out(&mut self, element: Element<'_>, material: u16) -> Result<u16, LoadError> {
+        if let Some(index) = self.palette.inside_out(material, element.place())? {
+            return Ok(index);
+        }
+        let opaque = self.palette.materials.get(usize::from(material));
+        if opaque.is_some_and(|m| m.two_sided && m.emission.is_black()) {
+            return Ok(material);
+        }
+        let message = "an opaque sphere must face outwards: remove flip_normals, make its \
+                       material `twosided`, or use a mesh";
+        Err(element.error(message))
+    }
+
+    fn finish(self) -> Read {
+        let Self { mut description, mut origins, palette, mut warnings } = self;
+        description.materials = palette.materials;
+        description.textures = palette.textures;
+        origins.materials = palette.places;
+        warnings.extend(palette.warnings);
+        Read { description, origins, warnings, strategies: Vec::new() }
+    }
+}
+
+/// The radiance that a shape emits to its front.
+fn emission_of(shape: Element<'_>) -> Result<Option<Rgb>, LoadError> {
+    let Some(emitter) = shape.objects("emitter")?.first().copied() else { return Ok(None) };
+    if emitter.plugin()? != "area" {
+        return Err(emitter.error("only the emitter `area` belongs to a shape"));
+    }
+    let radiance = emitter.color("radiance")?;
+    radiance.map(Some).ok_or_else(|| emitter.error("the parameter `radiance` is missing"))
+}
