@@ -4,13 +4,27 @@ use common::Rgb;
 
 use super::document::Element;
 use super::palette::Palette;
-use crate::scene::description::{BsdfDescription, ColorInput, Material};
+use crate::bsdf::Fresnel;
+use crate::scene::description::{BsdfDescription, ColorInput, Material, NumberInput};
 use crate::scene::diagnostic::LoadError;
 
 /// The deepest that models may be nested in one another.
 const MAX_NESTING: usize = 16;
 /// Diffuse reflectance where a scene does not say.
 const DEFAULT_REFLECTANCE: f64 = 0.5;
+
+/// Alpha of rough models where a scene does not say.
+const DEFAULT_ROUGHNESS: f64 = 0.1;
+
+/// Metals that scenes refer to by name: index of refraction and extinction coefficient at about
+/// 610, 550 and 465 nm [Johnson and Christy 1972; Rakic 1995].
+const METALS: &[(&str, [f64; 3], [f64; 3])] = &[
+    ("Ag", [0.155, 0.117, 0.138], [4.828, 3.122, 2.147]),
+    ("Al", [1.657, 0.880, 0.521], [9.224, 6.270, 4.837]),
+    ("Au", [0.143, 0.375, 1.442], [3.983, 2.386, 1.603]),
+    ("Cr", [4.370, 2.917, 1.655], [5.206, 4.231, 3.754]),
+    ("Cu", [0.200, 0.924, 1.102], [3.912, 2.452, 2.142]),
+];
 
 /// Indices of refraction that scenes refer to by name.
 const INDICES: &[(&str, f64)] = &[
@@ -81,14 +95,29 @@ impl Reader<'_> {
                 let reflectance = self.color_input(element, "reflectance")?;
                 one_sided(BsdfDescription::Lambert { reflectance })
             }
-            "dielectric" | "thindielectric" | "roughdielectric" => {
-                one_sided(self.dielectric(element)?)
+            "dielectric" | "thindielectric" => one_sided(dielectric(element)?),
+            "roughdielectric" => {
+                let roughness = self.roughness(element)?;
+                one_sided(rough(dielectric(element)?, roughness))
             }
-            "conductor" | "roughconductor" => one_sided(self.conductor(element)?),
-            "plastic" | "roughplastic" => {
-                let reflectance = self.color_input(element, "diffuse_reflectance")?;
-                self.tell(element, "its coat is not modelled: it becomes diffuse");
-                one_sided(BsdfDescription::Lambert { reflectance })
+            "conductor" => {
+                let roughness = 0.0.into();
+                one_sided(BsdfDescription::Conductor { fresnel: metal(element)?, roughness })
+            }
+            "roughconductor" => {
+                let roughness = self.roughness(element)?;
+                one_sided(BsdfDescription::Conductor { fresnel: metal(element)?, roughness })
+            }
+            "plastic" => one_sided(self.plastic(element, 0.0)?),
+            "roughplastic" => {
+                let roughness = match self.roughness(element)? {
+                    NumberInput::Constant(roughness) => roughness,
+                    NumberInput::Texture { .. } => {
+                        self.tell(element, "the roughness of a coat reads no texture: 0.1 is used");
+                        DEFAULT_ROUGHNESS
+                    }
+                };
+                one_sided(self.plastic(element, roughness)?)
             }
             "twosided" => {
                 let inner = self.nested(element, depth)?;
@@ -123,6 +152,48 @@ impl Reader<'_> {
         self.model(*first, depth + 1)
     }
 
+    /// Alpha of the facets; here they are always those of GGX and alike in all directions.
+    fn roughness(&mut self, element: Element<'_>) -> Result<NumberInput, LoadError> {
+        let facets = element.string("distribution")?.unwrap_or_else(|| "beckmann".to_owned());
+        if facets != "ggx" {
+            self.tell(element, &format!("its facets are those of `ggx` here, not of `{facets}`"));
+        }
+        if let Some(texture) = element.property("alpha")?.filter(|value| value.tag() == "texture") {
+            return Ok(match self.palette.texture(texture)? {
+                ColorInput::Texture { texture, .. } => {
+                    NumberInput::Texture { texture, factor: 1.0 }
+                }
+                ColorInput::Constant(color) => color.luminance().into(),
+            });
+        }
+        let along = [element.number("alpha_u")?, element.number("alpha_v")?];
+        let alpha = match along {
+            [Some(u), Some(v)] => {
+                if u != v {
+                    self.tell(element, "its facets are alike in all directions: the mean is used");
+                }
+                (u * v).max(0.0).sqrt()
+            }
+            _ => element.number("alpha")?.unwrap_or(DEFAULT_ROUGHNESS),
+        };
+        Ok(alpha.into())
+    }
+
+    fn plastic(
+        &mut self,
+        element: Element<'_>,
+        roughness: f64,
+    ) -> Result<BsdfDescription, LoadError> {
+        let eta = index(element, "int_ior", "polypropylene")? / index(element, "ext_ior", "air")?;
+        let tint = element.color("specular_reflectance")?.unwrap_or(Rgb::WHITE);
+        Ok(BsdfDescription::Plastic {
+            diffuse: self.color_input(element, "diffuse_reflectance")?,
+            fresnel: Fresnel::Dielectric { eta, tint },
+            roughness,
+            nonlinear: element.flag("nonlinear")?,
+        })
+    }
+
     /// A colour or a texture; the default of diffuse surfaces where it is absent.
     fn color_input(&mut self, element: Element<'_>, name: &str) -> Result<ColorInput, LoadError> {
         match element.property(name)? {
@@ -131,21 +202,50 @@ impl Reader<'_> {
             Some(value) => value.as_color().map(ColorInput::from),
         }
     }
+}
 
-    fn dielectric(&mut self, element: Element<'_>) -> Result<BsdfDescription, LoadError> {
-        let inside = index(element, "int_ior", "bk7")?;
-        let outside = index(element, "ext_ior", "air")?;
-        Ok(BsdfDescription::Dielectric {
-            eta: inside / outside,
-            reflectance: element.color("specular_reflectance")?.unwrap_or(Rgb::WHITE),
-            transmittance: element.color("specular_transmittance")?.unwrap_or(Rgb::WHITE),
-        })
-    }
+fn dielectric(element: Element<'_>) -> Result<BsdfDescription, LoadError> {
+    let inside = index(element, "int_ior", "bk7")?;
+    let outside = index(element, "ext_ior", "air")?;
+    Ok(BsdfDescription::Dielectric {
+        eta: inside / outside,
+        reflectance: element.color("specular_reflectance")?.unwrap_or(Rgb::WHITE),
+        transmittance: element.color("specular_transmittance")?.unwrap_or(Rgb::WHITE),
+    })
+}
 
-    fn conductor(&mut self, element: Element<'_>) -> Result<BsdfDescription, LoadError> {
-        let reflectance = element.color("specular_reflectance")?.unwrap_or(Rgb::WHITE);
-        Ok(BsdfDescription::Mirror { reflectance })
+/// The same boundary with facets.
+fn rough(smooth: BsdfDescription, roughness: NumberInput) -> BsdfDescription {
+    match smooth {
+        BsdfDescription::Dielectric { eta, reflectance, transmittance } => {
+            BsdfDescription::RoughDielectric { eta, reflectance, transmittance, roughness }
+        }
+        other => other,
     }
+}
+
+/// What a metal reflects: by its name, or by its index of refraction and extinction coefficient.
+fn metal(element: Element<'_>) -> Result<Fresnel, LoadError> {
+    let tint = element.color("specular_reflectance")?.unwrap_or(Rgb::WHITE);
+    let outside = index(element, "ext_eta", "air")?;
+    let name = element.string("material")?;
+    if name.as_deref() == Some("none") {
+        return Ok(Fresnel::Constant(tint));
+    }
+    let (eta, k) = if let (Some(eta), Some(k)) = (element.color("eta")?, element.color("k")?) {
+        (eta, k)
+    } else {
+        let name = name.unwrap_or_else(|| "Cu".to_owned());
+        let metal = METALS.iter().find(|(known, _, _)| *known == name).ok_or_else(|| {
+            let known: Vec<&str> = METALS.iter().map(|(known, _, _)| *known).collect();
+            let known = known.join(", ");
+            element.error(format!(
+                "no metal `{name}` here; those known: {known}, none; or give eta and k"
+            ))
+        })?;
+        (Rgb::from(metal.1), Rgb::from(metal.2))
+    };
+    Ok(Fresnel::Conductor { eta: eta / outside, k: k / outside, tint })
 }
 
 /// An index of refraction, as a number or by name.

@@ -305,7 +305,7 @@ impl<'a> Element<'a> {
 
     /// Its id, or else what it is and where.
     pub(super) fn label(&self) -> String {
-        let kind = self.node.attribute("type").unwrap_or(self.tag());
+        let kind = self.node.attribute("type").unwrap_or_else(|| self.tag());
         let line = self.place().line.unwrap_or(0);
         self.node.attribute("id").map_or_else(|| format!("{kind}:{line}"), str::to_owned)
     }
@@ -359,12 +359,11 @@ impl<'a> Element<'a> {
             return Ok(self);
         }
         let id = self.needed("id")?;
-        match self.source.ids.get(&id).and_then(|&index| self.source.at(index)) {
-            Some(node) => Ok(Self { source: self.source, node }),
-            None => {
-                let known = listed(self.source.ids.keys());
-                Err(self.error(format!("nothing has the id `{id}`; the ids: {known}")))
-            }
-        }
+        let found = self.source.ids.get(&id).and_then(|&index| self.source.at(index));
+        let node = found.ok_or_else(|| {
+            let known = listed(self.source.ids.keys());
+            self.error(format!("nothing has the id `{id}`; the ids: {known}"))
+        })?;
+        Ok(Self { source: self.source, node })
     }
 }

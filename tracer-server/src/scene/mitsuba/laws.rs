@@ -6,11 +6,12 @@ use common::Rgb;
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 
+use crate::bsdf::Fresnel;
 use crate::scene::load::{Loaded, load};
-use crate::scene::{BsdfDescription, Mesh, Scene};
+use crate::scene::{BsdfDescription, Glow, Mesh, NumberInput, Scene, ThinLens};
 
 /// A scene that uses every kind of value, a line each.
-const GOOD: &str = r##"<?xml version="1.0"?>
+const GOOD: &str = r#"<?xml version="1.0"?>
 <scene version="0.6.0">
 <default name="depth" value="7"/>
 <default name="wide" value="8"/>
@@ -26,7 +27,7 @@ const GOOD: &str = r##"<?xml version="1.0"?>
 <shape type="sphere"><point name="center" x="1" y="2" z="3"/><float name="radius" value="0.5"/><ref id="glass"/></shape>
 <shape type="rectangle" id="lamp"><emitter type="area"><rgb name="radiance" value="1 2 3"/></emitter></shape>
 </scene>
-"##;
+"#;
 
 fn load_text(text: impl AsRef<[u8]>) -> Result<Loaded, String> {
     let directory = tempfile::tempdir().expect("a directory");
@@ -305,26 +306,26 @@ fn every_mistake_is_located() {
         ("value=\"$wide\"", "value=\"70000\"", "6:1", "width is 70000"),
         ("0.5, 0.1, 0\"", "0.5, 1.5, 0\"", "11:1", "must have all channels in [0, 1]"),
         ("0.5, 0.1, 0\"", "400:0.1, 700:0.2\"", "11:53", "a spectrum over wavelengths"),
-        ("type=\"diffuse\"", "type=\"velvet\"", "11:33", "those known: diffuse"),
-        ("value=\"1.5\"", "value=\"-1\"", "12:37", "glass is 1.5"),
+        ("type=\"diffuse\"", "type=\"velvet\"", "11:32", "those known: diffuse"),
+        ("value=\"1.5\"", "value=\"-1\"", "12:36", "glass is 1.5"),
         ("vacuum", "kryptonite", "12:1", "no medium of that name"),
         ("<scale value=\"2\"/>", "<scale value=\"0\"/>", "13:25", "squash space flat"),
-        ("<scale value=\"2\"/>", "<skew/>", "13:52", "no step of a transform"),
-        ("<scale value=\"2\"/>", "<matrix value=\"1 2 3\"/>", "13:52", "3 numbers where 16 or 9"),
-        ("<scale value=\"2\"/>", "<rotate angle=\"3\"/>", "13:52", "the axis is zero"),
+        ("<scale value=\"2\"/>", "<skew/>", "13:51", "no step of a transform"),
+        ("<scale value=\"2\"/>", "<matrix value=\"1 2 3\"/>", "13:51", "3 numbers where 16 or 9"),
+        ("<scale value=\"2\"/>", "<rotate angle=\"3\"/>", "13:51", "the axis is zero"),
         ("<translate z=\"3\"/>", "<translate z=\"1e300\"/>", "13:1", "absurdly far"),
         (
             "<ref id=\"red\"/>",
             "<ref id=\"rad\"/>",
-            "13:116",
+            "13:99",
             "nothing has the id `rad`; the ids: glass",
         ),
         ("id=\"glass\"", "id=\"red\"", "12:1", "s.xml:11:1; rename one"),
         ("value=\"0.5\"", "value=\"-0.5\"", "14:1", "radius is -0.5"),
         ("type=\"sphere\"", "type=\"hair\"", "14:1", "no such shape here"),
-        ("<rgb name=\"radiance\" value=\"1 2 3\"/>", "", "15:36", "`radiance` is missing"),
+        ("<rgb name=\"radiance\" value=\"1 2 3\"/>", "", "15:35", "`radiance` is missing"),
         ("value=\"1 2 3\"", "value=\"1 2 -3\"", "15:1", "not negative"),
-        ("<emitter type=\"area\">", "<emitter type=\"point\">", "15:36", "belongs to a shape"),
+        ("<emitter type=\"area\">", "<emitter type=\"point\">", "15:35", "belongs to a shape"),
         ("</scene>", "<include filename=\"a.xml\"/></scene>", "16:1", "paste the content"),
         (
             "</scene>",
@@ -394,7 +395,7 @@ fn what_is_ignored_is_told_with_its_line() {
         "s.xml:16:1: `<shape type=\"cube\">`: left out",
         "s.xml:17:1: `<shape type=\"disk\">`: the disk becomes a polygon",
         "s.xml:17:20: `<float name=\"wobble\">` in `<shape type=\"disk\">` is ignored",
-        "s.xml:18:1: `<emitter type=\"sun\">` in `<scene>` is ignored",
+        "s.xml:18:1: `<emitter type=\"sun\">`: left out: no such emitter here",
     ] {
         assert!(told.iter().any(|line| line.contains(words)), "{words} is missing from {told:#?}");
     }
@@ -451,4 +452,89 @@ proptest! {
             prop_assert!(message.contains("m.ply") || message.contains("s.xml"), "{}", message);
         }
     }
+}
+
+#[test]
+fn emitters_without_a_shape_and_lenses_are_read() {
+    let text = GOOD
+        .replace("type=\"perspective\">", "type=\"thinlens\"><float name=\"aperture_radius\" value=\"0.2\"/><float name=\"focusDistance\" value=\"5\"/>")
+        .replace("</scene>", "<emitter type=\"point\"><point name=\"position\" value=\"1, 2, 3\"/><rgb name=\"intensity\" value=\"1, 2, 3\"/></emitter>
+            <emitter type=\"spot\"><transform name=\"toWorld\"><lookat origin=\"0, 3, 0\" target=\"0, 1, 0\" up=\"0, 0, 1\"/></transform><float name=\"cutoffAngle\" value=\"40\"/></emitter>
+            <emitter type=\"directional\"><vector name=\"direction\" x=\"0\" y=\"-1\" z=\"0\"/><float name=\"irradiance\" value=\"2\"/></emitter>
+            <emitter type=\"constant\"><float name=\"radiance\" value=\"0.5\"/></emitter></scene>");
+    let loaded = good(&text);
+    assert_eq!(loaded.description.lens, Some(ThinLens { radius: 0.2, focus: 5.0 }));
+    let glows: Vec<&Glow> = loaded.description.lights.iter().map(|light| &light.glow).collect();
+    let [point, spot, sun, sky] = glows.as_slice() else { panic!("{glows:?}") };
+    let at = DVec3::new(1.0, 2.0, 3.0);
+    assert!(
+        matches!(point, Glow::Point { position, intensity } if *position == at && intensity.b == 3.0)
+    );
+    let down = |direction: DVec3| (direction.normalize() + DVec3::Y).length() < 1e-12;
+    assert!(
+        matches!(spot, Glow::Spot { direction, cutoff: 40.0, beam: 30.0, .. } if down(*direction))
+    );
+    assert!(
+        matches!(sun, Glow::Directional { direction, irradiance } if down(*direction) && irradiance.r == 2.0)
+    );
+    assert!(matches!(sky, Glow::Environment { image: None, radiance, .. } if radiance.g == 0.5));
+    assert!(Scene::new(&loaded.description).is_ok(), "sound");
+}
+
+#[test]
+fn rough_models_and_metals_are_read() {
+    let model = |xml: &str| {
+        let loaded = with(&format!("<shape type=\"cube\">{xml}</shape>"));
+        loaded.description.materials.last().expect("a material").bsdf
+    };
+    let gold = model(
+        "<bsdf type=\"roughconductor\"><string name=\"material\" value=\"Au\"/><float name=\"alpha\" value=\"0.3\"/></bsdf>",
+    );
+    assert!(
+        matches!(
+            gold,
+            BsdfDescription::Conductor {
+                fresnel: Fresnel::Conductor { .. },
+                roughness: NumberInput::Constant(0.3)
+            }
+        ),
+        "{gold:?}"
+    );
+    let mirror =
+        model("<bsdf type=\"conductor\"><string name=\"material\" value=\"none\"/></bsdf>");
+    assert!(
+        matches!(
+            mirror,
+            BsdfDescription::Conductor {
+                fresnel: Fresnel::Constant(Rgb::WHITE),
+                roughness: NumberInput::Constant(0.0)
+            }
+        ),
+        "{mirror:?}"
+    );
+    let paint = model(
+        "<bsdf type=\"plastic\"><float name=\"intIOR\" value=\"1.5\"/><float name=\"extIOR\" value=\"1\"/></bsdf>",
+    );
+    assert!(
+        matches!(
+            paint,
+            BsdfDescription::Plastic {
+                fresnel: Fresnel::Dielectric { eta: 1.5, .. },
+                nonlinear: false,
+                ..
+            }
+        ),
+        "{paint:?}"
+    );
+    let frosted = model(
+        "<bsdf type=\"roughdielectric\"><string name=\"distribution\" value=\"ggx\"/></bsdf>",
+    );
+    assert!(matches!(frosted, BsdfDescription::RoughDielectric { .. }), "{frosted:?}");
+    let unknown = GOOD.replace("type=\"dielectric\" id", "type=\"conductor\" id");
+    let unknown = unknown.replace(
+        "<float name=\"intIOR\" value=\"1.5\"/>",
+        "<string name=\"material\" value=\"Unobtainium\"/>",
+    );
+    let message = load_text(unknown).expect_err("no such metal");
+    assert!(message.contains("s.xml:12") && message.contains("Au"), "{message}");
 }

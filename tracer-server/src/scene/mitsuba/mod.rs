@@ -4,6 +4,7 @@
 
 mod bsdf;
 mod document;
+mod emitter;
 #[cfg(test)]
 mod laws;
 mod mesh;
@@ -72,6 +73,8 @@ impl Loader {
             textures: Vec::new(),
             meshes: Vec::new(),
             spheres: Vec::new(),
+            lights: Vec::new(),
+            lens: None,
         };
         let origins = Origins::of_file(path);
         Self { description, origins, palette: Palette::default(), warnings: Vec::new() }
@@ -81,6 +84,12 @@ impl Loader {
         self.integrator(root)?;
         for shape in root.objects("shape")? {
             self.shape(shape)?;
+        }
+        for emitter in root.objects("emitter")? {
+            if let Some(light) = emitter::read(emitter, &mut self.warnings)? {
+                self.description.lights.push(light);
+                self.origins.lights.push(emitter.place());
+            }
         }
         self.sensor(root)
     }
@@ -117,6 +126,7 @@ impl Loader {
                 self.warnings.push(sensor.warning(message));
             }
             self.origins.camera = sensor.place();
+            self.description.lens = read.lens;
             read.view
         } else {
             let message = "no `<sensor>`: the point of view is a guess";

@@ -4,6 +4,7 @@ use common::CameraPose;
 use glam::{DMat3, DVec3};
 
 use super::document::Element;
+use crate::scene::description::ThinLens;
 use crate::scene::diagnostic::{LoadError, Warning};
 use crate::scene::viewpoint::Viewpoint;
 
@@ -19,6 +20,8 @@ pub(super) struct Sensor {
     pub(super) view: Viewpoint,
     /// The depths at which it cuts the scene off.
     pub(super) clip: [f64; 2],
+    /// Its lens, where it is no pinhole.
+    pub(super) lens: Option<ThinLens>,
     /// What is not modelled of it.
     pub(super) warnings: Vec<Warning>,
 }
@@ -26,14 +29,14 @@ pub(super) struct Sensor {
 /// Reads a `sensor`.
 pub(super) fn read(sensor: Element<'_>) -> Result<Sensor, LoadError> {
     let mut warnings = Vec::new();
-    match sensor.plugin()?.as_str() {
-        "perspective" => {}
-        "thinlens" => warnings.push(sensor.warning("the lens is taken for a pinhole")),
+    let lens = match sensor.plugin()?.as_str() {
+        "perspective" => None,
+        "thinlens" => Some(thin_lens(sensor)?),
         _ => {
             let message = "no such sensor here; those known: perspective, thinlens";
             return Err(sensor.error(message));
         }
-    }
+    };
     let [width, height] = film(sensor, &mut warnings)?;
     let to_world = sensor.transform("to_world")?;
     let linear = DMat3::from_mat4(to_world);
@@ -55,7 +58,16 @@ pub(super) fn read(sensor: Element<'_>) -> Result<Sensor, LoadError> {
         sensor.number("near_clip")?.unwrap_or(0.0),
         sensor.number("far_clip")?.unwrap_or(f64::INFINITY),
     ];
-    Ok(Sensor { view: Viewpoint { camera, width, height }, clip, warnings })
+    Ok(Sensor { view: Viewpoint { camera, width, height }, clip, lens, warnings })
+}
+
+fn thin_lens(sensor: Element<'_>) -> Result<ThinLens, LoadError> {
+    let length = |name: &str| match sensor.number(name)? {
+        Some(length) if length > 0.0 => Ok(length),
+        Some(length) => Err(sensor.error(format!("{name} is {length}; it must be positive"))),
+        None => Err(sensor.error(format!("the parameter `{name}` is missing"))),
+    };
+    Ok(ThinLens { radius: length("aperture_radius")?, focus: length("focus_distance")? })
 }
 
 fn film(sensor: Element<'_>, warnings: &mut Vec<Warning>) -> Result<[u32; 2], LoadError> {
@@ -94,22 +106,20 @@ fn vertical_fov(sensor: Element<'_>, aspect: f64) -> Result<f64, LoadError> {
     if !(fov > 0.0 && fov < 180.0) {
         return Err(sensor.error(format!("fov is {fov}; it must lie between 0 and 180 degrees")));
     }
-    let tangent = (0.5 * fov.to_radians()).tan();
-    let wide = aspect >= 1.0;
-    let tan_y = match axis.as_deref() {
-        None | Some("x") => tangent / aspect,
-        Some("y") => tangent,
-        Some("smaller") if wide => tangent,
-        Some("smaller") => tangent / aspect,
-        Some("larger") if wide => tangent / aspect,
-        Some("larger") => tangent,
-        Some("diagonal") => tangent / aspect.hypot(1.0),
+    // The film's height over its extent along the axis of the angle.
+    let across = match axis.as_deref() {
+        None | Some("x") => 1.0 / aspect,
+        Some("y") => 1.0,
+        Some("smaller") => (1.0 / aspect).max(1.0),
+        Some("larger") => (1.0 / aspect).min(1.0),
+        Some("diagonal") => 1.0 / aspect.hypot(1.0),
         Some(other) => {
             let message =
                 format!("fov_axis is `{other}`; it must be x, y, diagonal, smaller or larger");
             return Err(sensor.error(message));
         }
     };
+    let tan_y = across * (0.5 * fov.to_radians()).tan();
     Ok(2.0 * tan_y.atan().to_degrees())
 }
 

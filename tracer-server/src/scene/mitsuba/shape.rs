@@ -89,7 +89,7 @@ pub(super) fn read(element: Element<'_>) -> Result<Shape, LoadError> {
         }
         mesh::face_along_normals(mesh);
     }
-    finish(element, &mut meshes, from_file, flip)?;
+    finish(element, &mut meshes, from_file)?;
     for mesh in &mut meshes {
         mesh.name.clone_from(&shape.name);
     }
@@ -98,13 +98,9 @@ pub(super) fn read(element: Element<'_>) -> Result<Shape, LoadError> {
 }
 
 /// Shading normals as the shape asks for them, and the side it calls its front.
-fn finish(
-    element: Element<'_>,
-    meshes: &mut [Mesh],
-    from_file: bool,
-    flip: bool,
-) -> Result<(), LoadError> {
+fn finish(element: Element<'_>, meshes: &mut [Mesh], from_file: bool) -> Result<(), LoadError> {
     let flat = element.flag("face_normals")?;
+    let flip = element.flag("flip_normals")?;
     for mesh in meshes {
         if flat {
             mesh.normals.clear();
@@ -264,6 +260,6 @@ fn ellipsoid(centre: DVec3, radius: f64) -> Mesh {
 }
 
 fn flat(surface: shape::Surface, texcoords: Vec<[Vec2; 3]>) -> Mesh {
-    let shape::Surface { positions, triangles } = surface;
+    let shape::Surface { positions, triangles, .. } = surface;
     Mesh { positions, triangles, texcoords, ..Mesh::default() }
 }

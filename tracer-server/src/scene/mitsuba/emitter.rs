@@ -1,0 +1,76 @@
+//! Emitters that belong to no shape.
+
+use common::Rgb;
+use glam::{DMat3, DVec3};
+
+use super::document::Element;
+use crate::scene::description::{Glow, LightDescription};
+use crate::scene::diagnostic::{LoadError, Warning};
+use crate::scene::texture::read_sky;
+
+/// Half angle in degrees of a spot that does not tell its own.
+const DEFAULT_CUTOFF: f64 = 20.0;
+
+/// Reads an `emitter`, and what it asks for in vain; `None` for a kind that is not known here.
+pub(super) fn read(
+    emitter: Element<'_>,
+    warnings: &mut Vec<Warning>,
+) -> Result<Option<LightDescription>, LoadError> {
+    let to_world = emitter.transform("to_world")?;
+    let (place, ahead) =
+        (to_world.transform_point3(DVec3::ZERO), to_world.transform_vector3(DVec3::Z));
+    let glow = match emitter.plugin()?.as_str() {
+        "point" => Glow::Point {
+            position: emitter.point("position")?.unwrap_or(place),
+            intensity: color(emitter, "intensity")?,
+        },
+        "spot" => {
+            warnings.push(emitter.warning("its rim falls off smoothly in the cosine of the angle"));
+            let cutoff = emitter.number("cutoff_angle")?.unwrap_or(DEFAULT_CUTOFF);
+            Glow::Spot {
+                position: place,
+                direction: ahead,
+                intensity: color(emitter, "intensity")?,
+                cutoff,
+                beam: emitter.number("beam_width")?.unwrap_or(0.75 * cutoff),
+            }
+        }
+        "directional" => Glow::Directional {
+            direction: emitter.point("direction")?.unwrap_or(ahead),
+            irradiance: color(emitter, "irradiance")?,
+        },
+        "constant" => Glow::Environment {
+            radiance: color(emitter, "radiance")?,
+            image: None,
+            rotation: DMat3::IDENTITY,
+        },
+        "envmap" => image(emitter, DMat3::from_mat4(to_world))?,
+        _ => {
+            let message = "left out: no such emitter here; those known: area (in a shape), point, \
+                           spot, directional, constant, envmap";
+            warnings.push(emitter.warning(message));
+            return Ok(None);
+        }
+    };
+    Ok(Some(LightDescription { name: emitter.label(), glow }))
+}
+
+/// A colour; one where it is absent.
+fn color(emitter: Element<'_>, name: &str) -> Result<Rgb, LoadError> {
+    Ok(emitter.color(name)?.unwrap_or(Rgb::WHITE))
+}
+
+/// An image around the scene. The renderer's images have the axes that ours have.
+fn image(emitter: Element<'_>, rotation: DMat3) -> Result<Glow, LoadError> {
+    let name = emitter.string("filename")?.ok_or_else(|| {
+        emitter.error("the parameter `filename` is missing: the file with the image")
+    })?;
+    let rigid = (rotation.transpose() * rotation - DMat3::IDENTITY).to_cols_array();
+    if rigid.iter().any(|off| off.abs() > 1e-6) || rotation.determinant() < 0.0 {
+        let message = "its transform must be a rotation; remove scales and mirrors";
+        return Err(emitter.error(message));
+    }
+    let image = read_sky(&emitter.file(&name)).map_err(|message| emitter.error(message))?;
+    let radiance = Rgb::grey(emitter.number("scale")?.unwrap_or(1.0));
+    Ok(Glow::Environment { radiance, image: Some(image), rotation })
+}
