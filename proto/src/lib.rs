@@ -5,11 +5,14 @@
 //! been checked. This crate knows no socket and neither program.
 
 mod convert;
+mod fingerprint;
 
 pub use convert::{
     Hello, MAX_MESSAGE_BYTES, ReceivedScene, SceneAssembler, TracerEvent, ViewerEvent,
     WantedFilter, WireError, scene_chunks, unchanged_scene,
 };
+
+pub use fingerprint::Fingerprint;
 
 /// The generated types, clients and servers of package `lvis.v1`.
 #[allow(

@@ -9,6 +9,7 @@ mod documents;
 mod filters;
 mod layers;
 mod reconnect;
+mod security;
 mod stream;
 mod tidy;
 mod workspace;

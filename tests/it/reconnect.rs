@@ -10,7 +10,7 @@ use tracer_server::scene::Scene;
 use tracer_server::scene::load::load;
 use viewer_client::app::Viewer;
 use viewer_client::command::Command;
-use viewer_client::connection::Link;
+use viewer_client::connection::{Link, Peer};
 use viewer_client::status::{LinkState, Status};
 
 /// Nothing here takes that long; what does hangs.
@@ -48,7 +48,7 @@ fn a_viewer_survives_its_daemon() {
     let first = daemon(SocketAddr::from(([127, 0, 0, 1], 0)));
     let address = first.address();
     let mut viewer = Viewer::new(Status::new(address.to_string(), false));
-    let link = Link::start(address.to_string(), Box::new(|| {})).expect("a thread");
+    let link = Link::start(Peer::open(address.to_string()), Box::new(|| {})).expect("a thread");
     viewer.set_link(link);
     until("scene, image and paths", &mut viewer, |v| v.is_settled() && v.paths_received() > 100);
     assert!(viewer.status().is_connected(), "what came, came over a connection");
@@ -77,7 +77,8 @@ fn a_viewer_survives_its_daemon() {
 #[test]
 fn a_viewer_without_a_daemon_says_why_and_goes_on_trying() {
     let mut viewer = Viewer::new(Status::new("127.0.0.1:1".to_owned(), false));
-    let link = Link::start("127.0.0.1:1".to_owned(), Box::new(|| {})).expect("a thread");
+    let link =
+        Link::start(Peer::open("127.0.0.1:1".to_owned()), Box::new(|| {})).expect("a thread");
     viewer.set_link(link);
     let failure = |v: &Viewer| match &v.status().link {
         LinkState::Disconnected { reason, retry_at } if reason.contains("127.0.0.1:1") => {

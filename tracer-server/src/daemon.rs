@@ -14,14 +14,14 @@ use crate::hub::HubLimits;
 use crate::mutation::Mixture;
 use crate::path::Failure;
 use crate::scene::Scene;
-use crate::service::{Server, SessionInfo, StartError};
+use crate::service::{Security, Server, SessionInfo, StartError};
 
 /// Where a daemon listens by default.
 pub const DEFAULT_ADDRESS: SocketAddr =
     SocketAddr::new(std::net::IpAddr::V4(Ipv4Addr::LOCALHOST), 50061);
 
 /// How a daemon runs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct DaemonOptions {
     /// Where it listens; port 0 takes any that is free.
     pub listen: SocketAddr,
@@ -29,6 +29,8 @@ pub struct DaemonOptions {
     pub ensemble: EnsembleSettings,
     /// Bounds of its queues.
     pub limits: HubLimits,
+    /// Who may connect, and whether others can listen.
+    pub security: Security,
 }
 
 impl Default for DaemonOptions {
@@ -37,6 +39,7 @@ impl Default for DaemonOptions {
             listen: DEFAULT_ADDRESS,
             ensemble: EnsembleSettings::default(),
             limits: HubLimits::default(),
+            security: Security::default(),
         }
     }
 }
@@ -66,7 +69,7 @@ impl Daemon {
     /// Starts the chains of `scene`, and shows them to whoever connects.
     pub fn start(scene: Arc<Scene>, options: &DaemonOptions) -> Result<Self, DaemonError> {
         let info = session_info(&scene, &options.ensemble);
-        let server = Server::start(options.listen, info, options.limits)?;
+        let server = Server::start(options.listen, info, options.limits, options.security.clone())?;
         let engine = Engine::start(scene, &options.ensemble, server.hub().clone())
             .map_err(DaemonError::Engine)?;
         Ok(Self { server, _engine: engine })

@@ -1,18 +1,22 @@
 //! The command line.
 
+use std::fs;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use anyhow::{Context as _, anyhow};
 use clap::{Args, Parser, Subcommand};
 use common::Filter;
 
 use crate::command;
+use crate::connection::{Bearer, Fingerprint, Peer, Trust};
 
 const EXAMPLES: &str = "\
 Examples:
   viewer-client                          a built-in scene, with a daemon of its own
   viewer-client --scene caustic          another one, or a scene file
   viewer-client 127.0.0.1:50061          a running `tracer-server serve`
+  viewer-client render-box:50061 --token-file token --fingerprint 3F:A2:...
   viewer-client --headless --screenshot-to view.png --wait-paths 20000
   viewer-client watch 127.0.0.1:50061 --count 10
   viewer-client bench --paths 10000,100000";
@@ -51,6 +55,9 @@ pub struct ViewArgs {
     /// HOST:PORT of a running daemon; without it, one is started inside this program.
     #[arg(value_name = "ADDR", value_parser = address)]
     pub address: Option<String>,
+    /// How a daemon elsewhere is trusted.
+    #[command(flatten)]
+    pub trust: TrustArgs,
     /// Built-in scene or scene file for the daemon inside this program.
     #[arg(long, value_name = "SCENE", conflicts_with = "address")]
     pub scene: Option<String>,
@@ -80,6 +87,9 @@ pub struct WatchArgs {
     /// HOST:PORT of a running daemon.
     #[arg(value_name = "ADDR", value_parser = address)]
     pub address: String,
+    /// How the daemon is trusted.
+    #[command(flatten)]
+    pub trust: TrustArgs,
     /// Which paths to show, such as `lpe "CDS+L"` or `any in sphere(0, 1, 0, 0.5)`; see
     /// docs/FILTERS.md.
     #[arg(long, value_name = "TEXT", value_parser = filter)]
@@ -110,13 +120,46 @@ pub struct BenchArgs {
     /// Size of the picture in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
     pub size: [u32; 2],
-    /// Which paths to show, such as `lpe "CDS+L"` or `any in sphere(0, 1, 0, 0.5)`; see
-    /// docs/FILTERS.md.
-    #[arg(long, value_name = "TEXT", value_parser = filter)]
-    pub filter: Option<String>,
     /// One JSON object a line.
     #[arg(long)]
     pub json: bool,
+}
+
+/// How a daemon is trusted, and what it is shown.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Connection")]
+pub struct TrustArgs {
+    /// File with the token that the daemon asks for.
+    #[arg(long, value_name = "FILE")]
+    pub token_file: Option<PathBuf>,
+    /// Encrypts, and trusts certificates signed by this one (PEM).
+    #[arg(long, value_name = "FILE", conflicts_with = "fingerprint")]
+    pub ca_cert: Option<PathBuf>,
+    /// Encrypts, and trusts the one certificate whose fingerprint the daemon has printed.
+    #[arg(long, value_name = "SHA256")]
+    pub fingerprint: Option<Fingerprint>,
+}
+
+impl TrustArgs {
+    /// The daemon at `address`; reads the files.
+    pub fn peer(&self, address: String) -> anyhow::Result<Peer> {
+        let read = |file: &PathBuf| {
+            fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))
+        };
+        let token = match &self.token_file {
+            Some(file) => {
+                let problem = |problem| anyhow!("{}: {problem}", file.display());
+                Bearer::new(&read(file)?).map_err(problem)?
+            }
+            None => Bearer::default(),
+        };
+        let trust = match (self.fingerprint, &self.ca_cert) {
+            (Some(fingerprint), _) => Trust::Pinned(fingerprint),
+            (None, Some(file)) => Trust::Authority(read(file)?),
+            (None, None) => Trust::Plain,
+        };
+        Ok(Peer { address, trust, token })
+    }
 }
 
 fn long_help() -> String {

@@ -6,6 +6,7 @@ use anyhow::Context as _;
 
 use crate::app::Viewer;
 use crate::cli::{Action, Cli, ViewArgs};
+use crate::connection::Peer;
 use crate::headless::Wait;
 use crate::status::Status;
 use crate::{bench, embedded, headless, script, watch, window};
@@ -25,21 +26,21 @@ pub fn run(cli: Cli) -> anyhow::Result<()> {
 fn view(args: &ViewArgs) -> anyhow::Result<()> {
     let commands = args.run.as_deref().map(script::read).transpose()?.unwrap_or_default();
     // The daemon must outlive the viewer, which says goodbye to it.
-    let (address, daemon) = if let Some(address) = &args.address {
-        (address.clone(), None)
+    let (peer, daemon) = if let Some(address) = &args.address {
+        (args.trust.peer(address.clone())?, None)
     } else {
         let daemon = embedded::start(args.scene.as_deref().unwrap_or(embedded::DEFAULT_SCENE))?;
-        (daemon.address().to_string(), Some(daemon))
+        (Peer::open(daemon.address().to_string()), Some(daemon))
     };
-    let mut viewer = Viewer::new(Status::new(address.clone(), daemon.is_some()));
+    let mut viewer = Viewer::new(Status::new(peer.address.clone(), daemon.is_some()));
     viewer.run_script(commands);
     if let Some(file) = &args.screenshot_to {
         let wait = match (args.wait_paths, args.wait) {
             (Some(paths), _) => Wait::Paths(paths),
             (None, time) => Wait::Time(time.unwrap_or(DEFAULT_WAIT)),
         };
-        headless::run(viewer, address, args.size, wait, file)
+        headless::run(viewer, peer, args.size, wait, file)
     } else {
-        window::run(viewer, address).context("the viewer ended")
+        window::run(viewer, peer).context("the viewer ended")
     }
 }

@@ -19,7 +19,8 @@ pub fn run(args: &WatchArgs) -> anyhow::Result<()> {
 
 async fn watch(args: &WatchArgs) -> anyhow::Result<()> {
     let filter = args.filter.clone().map(|text| WantedFilter { revision: 1, text });
-    let mut session = Session::open(&args.address, "Lvis watch", filter).await?;
+    let peer = args.trust.peer(args.address.clone())?;
+    let mut session = Session::open(&peer, "Lvis watch", filter).await?;
     let mut names = Names::default();
     let mut batches = 0;
     let mut out = io::stdout();

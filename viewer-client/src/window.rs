@@ -7,7 +7,7 @@ use anyhow::{Context as _, anyhow};
 use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 
 use crate::app::Viewer;
-use crate::connection::{Link, Waker};
+use crate::connection::{Link, Peer, Waker};
 use crate::gpu::Quality;
 use crate::pace::{FRAME, Pace};
 
@@ -30,7 +30,7 @@ pub(crate) fn graphics_setup() -> WgpuSetupCreateNew {
 }
 
 /// Opens the window, and returns when it is closed.
-pub fn run(viewer: Viewer, address: String) -> anyhow::Result<()> {
+pub fn run(viewer: Viewer, peer: Peer) -> anyhow::Result<()> {
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("Lvis")
@@ -49,7 +49,7 @@ pub fn run(viewer: Viewer, address: String) -> anyhow::Result<()> {
         let mut viewer = viewer;
         let ctx = cc.egui_ctx.clone();
         let waker: Waker = Box::new(move || ctx.request_repaint_after(FRAME));
-        viewer.set_link(Link::start(address, waker)?);
+        viewer.set_link(Link::start(peer, waker)?);
         let app: Box<dyn eframe::App> = Box::new(Window { viewer, pace: Pace::default() });
         Ok(app)
     };

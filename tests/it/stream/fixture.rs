@@ -14,13 +14,13 @@ use proto::{Hello, ProtocolVersion, TracerEvent, v1};
 use tonic::transport::{Channel, Endpoint};
 use tonic::{Status, Streaming};
 use tracer_server::hub::HubLimits;
-use tracer_server::service::{Server, SessionInfo};
+use tracer_server::service::{Security, Server, SessionInfo};
 
 /// Nothing here takes that long; what does hangs.
 pub(super) const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Waits for what must happen.
-pub(super) async fn soon<F: Future>(what: &str, future: F) -> F::Output {
+pub(crate) async fn soon<F: Future>(what: &str, future: F) -> F::Output {
     tokio::time::timeout(PATIENCE, future)
         .await
         .unwrap_or_else(|_| panic!("waits for ever: {what}"))
@@ -72,12 +72,16 @@ pub(super) fn strip(triangles: u32, camera: Camera) -> SceneMesh {
 }
 
 pub(super) fn start(limits: HubLimits) -> Server {
+    start_guarded(limits, Security::default())
+}
+
+pub(crate) fn start_guarded(limits: HubLimits, security: Security) -> Server {
     let any_port = "127.0.0.1:0".parse().expect("an address");
-    Server::start(any_port, session_info(), limits).expect("a free port")
+    Server::start(any_port, session_info(), limits, security).expect("a free port")
 }
 
 /// Stops a server off the runtime, which goes on reading meanwhile.
-pub(super) async fn stop(server: Server) {
+pub(crate) async fn stop(server: Server) {
     let stopping = tokio::task::spawn_blocking(move || server.stop());
     soon("the server to stop", stopping).await.expect("stopping does not panic");
 }

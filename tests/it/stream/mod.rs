@@ -1,6 +1,6 @@
 //! A real daemon service on a free port, watched by real viewers; only the paths are made up.
 
-mod fixture;
+pub(crate) mod fixture;
 
 use std::io::{Read as _, Write as _};
 use std::net::TcpStream;

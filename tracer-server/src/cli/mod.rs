@@ -5,6 +5,7 @@
 //! done, 1 a check failed, 2 bad usage or input.
 
 pub mod chains;
+pub mod door;
 pub mod info;
 pub mod input;
 mod inventory;

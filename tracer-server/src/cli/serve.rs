@@ -1,17 +1,17 @@
 //! `tracer-server serve`: the daemon.
 
 use std::io::{self, Write as _};
-use std::net::SocketAddr;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use anyhow::{Context as _, ensure};
+use anyhow::Context as _;
 use clap::Args;
 use tokio::signal;
 
 use super::chains::ChainArgs;
+use super::door::DoorArgs;
 use super::input::{self, FilmSize};
-use crate::daemon::{DEFAULT_ADDRESS, Daemon, DaemonOptions};
+use crate::daemon::{Daemon, DaemonOptions};
 
 /// Traces a scene for ever, and shows viewers how.
 ///
@@ -23,37 +23,31 @@ Examples:
   tracer-server serve
   tracer-server serve door --chains 256 --seed 7
   tracer-server serve door --strategies bidirectional=0.7,lens=0.3
-  tracer-server serve scenes/room.toml --listen 127.0.0.1:0 --width 640 --height 480")]
+  tracer-server serve scenes/room.toml --listen 127.0.0.1:0 --width 640 --height 480
+  tracer-server serve --listen 0.0.0.0:50061 --token-file token --tls-self-signed")]
 pub struct ServeArgs {
     /// A built-in scene, a .toml, .obj or Mitsuba .xml file, or a directory that holds one.
     #[arg(default_value = "cornell")]
     pub scene: String,
-    /// Where to listen; port 0 takes any that is free.
-    #[arg(long, value_name = "ADDR:PORT", default_value_t = DEFAULT_ADDRESS)]
-    pub listen: SocketAddr,
+    /// Who may connect, and how.
+    #[command(flatten)]
+    pub door: DoorArgs,
     /// The chains.
     #[command(flatten)]
     pub chains: ChainArgs,
     /// The film.
     #[command(flatten)]
     pub film: FilmSize,
-    /// Let other machines connect, unencrypted and unauthenticated.
-    #[arg(long)]
-    pub insecure: bool,
 }
 
 /// Serves until it is told to stop.
 pub fn run(args: &ServeArgs) -> anyhow::Result<ExitCode> {
-    ensure!(
-        args.insecure || args.listen.ip().is_loopback(),
-        "--listen {}: other machines could connect there, without encryption and without asking \
-         who they are. Listen on 127.0.0.1, or add --insecure where the network is trusted",
-        args.listen,
-    );
+    let security = args.door.security()?;
     let (scene, wishes) = input::scene(&args.scene, args.film)?;
     let ensemble = args.chains.ensemble(&scene, &wishes)?;
     let scene = Arc::new(scene);
-    let options = DaemonOptions { listen: args.listen, ensemble, ..DaemonOptions::default() };
+    let listen = args.door.listen;
+    let options = DaemonOptions { listen, ensemble, security, ..DaemonOptions::default() };
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
         .build()
@@ -70,6 +64,9 @@ async fn serve(
     let daemon = Daemon::start(scene, options)?;
     let mut out = io::stdout().lock();
     writeln!(out, "listening on {}", daemon.address())?;
+    if let Some(certificate) = &options.security.certificate {
+        writeln!(out, "certificate fingerprint {}", certificate.fingerprint())?;
+    }
     out.flush()?;
     drop(out);
     tokio::select! {

@@ -3,11 +3,13 @@
 //! A [`Server`] owns a thread with its own runtime, so that a program without one can embed it. This
 //! module knows the hub and the wire, and nothing of how paths are made.
 
+mod access;
 mod connections;
 mod outbound;
 mod scene;
 mod server;
 mod session;
+mod tls;
 
 use std::pin::Pin;
 use std::sync::Arc;
@@ -21,9 +23,12 @@ use tokio::net::TcpListener;
 use tokio_stream::Stream;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
+use tonic::service::interceptor::InterceptedService;
 use tonic::{Request, Response, Status, Streaming};
 
+pub use access::{Access, MAX_TOKEN_LENGTH, MIN_TOKEN_LENGTH, Token};
 pub use server::{Server, StartError};
+pub use tls::{Certificate, CertificateError};
 
 use crate::hub::{Hub, Pump};
 use outbound::Outbound;
@@ -74,6 +79,15 @@ impl SessionInfo {
     }
 }
 
+/// Who may come in, and whether others can listen.
+#[derive(Clone, Debug, Default)]
+pub struct Security {
+    /// The tokens that open the door.
+    pub access: Access,
+    /// What the daemon shows for itself; without it, nothing is encrypted.
+    pub certificate: Option<Certificate>,
+}
+
 /// Why the service ended, if not on request.
 #[derive(Debug, Error)]
 pub enum ServeError {
@@ -92,7 +106,7 @@ pub enum ServeError {
 pub async fn serve(
     listener: TcpListener,
     (hub, pump): (Hub, Pump),
-    info: Arc<SessionInfo>,
+    (info, security): (Arc<SessionInfo>, Security),
     shutdown: CancellationToken,
 ) -> Result<(), ServeError> {
     let tasks = TaskTracker::new();
@@ -111,13 +125,17 @@ pub async fn serve(
         .max_decoding_message_size(MAX_REQUEST_BYTES)
         .max_encoding_message_size(MAX_MESSAGE_BYTES);
 
-    let server = tonic::transport::Server::builder()
+    let mut server = tonic::transport::Server::builder();
+    if let Some(certificate) = &security.certificate {
+        server = server.tls_config(certificate.server_config())?;
+    }
+    let server = server
         .http2_keepalive_interval(Some(PING_INTERVAL))
         .http2_keepalive_timeout(Some(PING_TIMEOUT))
         .max_concurrent_streams(Some(STREAMS_PER_CONNECTION))
         .add_service(health)
-        .add_service(reflection)
-        .add_service(tracer)
+        .add_service(InterceptedService::new(reflection, security.access))
+        .add_service(InterceptedService::new(tracer, security.access))
         .serve_with_incoming_shutdown(
             connections::accept(listener, MAX_CONNECTIONS),
             shutdown.clone().cancelled_owned(),

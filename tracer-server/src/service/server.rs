@@ -11,7 +11,7 @@ use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 use tokio_util::sync::CancellationToken;
 
-use super::{SessionInfo, serve};
+use super::{Security, SessionInfo, serve};
 use crate::hub::{Hub, HubLimits};
 
 /// Threads of the runtime; the cores belong to the chains.
@@ -52,6 +52,7 @@ impl Server {
         address: SocketAddr,
         info: SessionInfo,
         limits: HubLimits,
+        security: Security,
     ) -> Result<Self, StartError> {
         let listen = |source| StartError::Listen { address, source };
         let listener = std::net::TcpListener::bind(address).map_err(listen)?;
@@ -70,7 +71,8 @@ impl Server {
 
         let (hub, pump) = Hub::new(limits);
         let (shutdown, ended) = (CancellationToken::new(), CancellationToken::new());
-        let service = serve(listener, (hub.clone(), pump), Arc::new(info), shutdown.clone());
+        let service =
+            serve(listener, (hub.clone(), pump), (Arc::new(info), security), shutdown.clone());
         let ends = ended.clone().drop_guard();
         let run = move || {
             let _ends = ends;

@@ -4,10 +4,14 @@
 
 mod backoff;
 mod inbox;
+mod peer;
 mod session;
+mod tls;
 
 pub use backoff::delay;
 pub use inbox::{Delivery, Inbox};
+pub use peer::{Bearer, Peer, Trust};
+pub use proto::Fingerprint;
 pub use session::{SceneFetcher, Session, SessionError};
 
 use std::fmt;
@@ -27,7 +31,7 @@ pub type Waker = Box<dyn Fn() + Send + Sync>;
 
 /// A connection that mends itself. Dropping it says goodbye and waits for its thread.
 pub struct Link {
-    address: String,
+    peer: Peer,
     inbox: Arc<Inbox>,
     retry_now: Arc<Notify>,
     shutdown: CancellationToken,
@@ -36,19 +40,19 @@ pub struct Link {
 
 impl fmt::Debug for Link {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Link").field("address", &self.address).finish_non_exhaustive()
+        f.debug_struct("Link").field("peer", &self.peer).finish_non_exhaustive()
     }
 }
 
 impl Link {
-    /// Begins to connect to `address` (HOST:PORT).
-    pub fn start(address: String, waker: Waker) -> std::io::Result<Self> {
+    /// Begins to connect to `peer`.
+    pub fn start(peer: Peer, waker: Waker) -> std::io::Result<Self> {
         let inbox = Arc::new(Inbox::default());
         let retry_now = Arc::new(Notify::new());
         let shutdown = CancellationToken::new();
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         let keeper = Keeper {
-            address: address.clone(),
+            peer: peer.clone(),
             inbox: Arc::clone(&inbox),
             retry_now: Arc::clone(&retry_now),
             shutdown: shutdown.clone(),
@@ -58,12 +62,12 @@ impl Link {
         let thread = std::thread::Builder::new()
             .name("connection".to_owned())
             .spawn(move || runtime.block_on(keeper.run()))?;
-        Ok(Self { address, inbox, retry_now, shutdown, thread: Some(thread) })
+        Ok(Self { peer, inbox, retry_now, shutdown, thread: Some(thread) })
     }
 
     /// Where the daemon should be.
     pub fn address(&self) -> &str {
-        &self.address
+        &self.peer.address
     }
 
     /// Takes everything that came.
@@ -90,7 +94,7 @@ impl Drop for Link {
 
 /// What the connection's thread owns.
 struct Keeper {
-    address: String,
+    peer: Peer,
     inbox: Arc<Inbox>,
     retry_now: Arc<Notify>,
     shutdown: CancellationToken,
@@ -107,7 +111,7 @@ impl Keeper {
             self.set_state(LinkState::Connecting);
             let ended = tokio::select! {
                 () = shutdown.cancelled() => return,
-                opened = Session::open(&self.address, "Lvis viewer", None) => match opened {
+                opened = Session::open(&self.peer, "Lvis viewer", None) => match opened {
                     Ok(session) => self.listen(session, &mut failures).await,
                     Err(error) => Some(error),
                 },

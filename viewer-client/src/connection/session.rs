@@ -11,8 +11,12 @@ use proto::{
 use thiserror::Error;
 use tokio::sync::mpsc;
 use tokio_stream::wrappers::ReceiverStream;
+use tonic::service::interceptor::InterceptedService;
 use tonic::transport::{Channel, Endpoint};
 use tonic::{Code, Status, Streaming};
+
+use super::peer::{Bearer, Peer};
+use super::tls;
 
 /// Window of a stream and of a connection; a small one holds back batches of 64 KiB.
 const WINDOW_BYTES: u32 = 4 << 20;
@@ -33,6 +37,26 @@ pub enum SessionError {
     /// The address is none.
     #[error("`{0}` is not an address; write HOST:PORT, such as 127.0.0.1:50061")]
     BadAddress(String),
+    /// The certificate is not the right one, or there is no TLS.
+    #[error("no trusted connection to {address}: {reason}")]
+    Untrusted {
+        /// HOST:PORT.
+        address: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A token must not be seen by others.
+    #[error(
+        "{0} is another machine, and the token would travel unencrypted: trust the daemon's \
+         certificate with --fingerprint or --ca-cert"
+    )]
+    ExposedToken(String),
+    /// Something listens, but does not speak as expected.
+    #[error(
+        "{0} broke off the greeting: if the daemon encrypts, trust its certificate with \
+         --fingerprint or --ca-cert"
+    )]
+    NoGreeting(String),
     /// Nobody listens.
     #[error("no daemon answers at {0}")]
     Unreachable(String),
@@ -59,33 +83,38 @@ impl From<Status> for SessionError {
     }
 }
 
+/// A client that shows its token.
+type Client = TracerClient<InterceptedService<Channel, Bearer>>;
+
 /// An open session.
 #[derive(Debug)]
 pub struct Session {
-    client: TracerClient<Channel>,
+    client: Client,
     incoming: Streaming<v1::TracerMessage>,
     outgoing: mpsc::Sender<v1::ViewerMessage>,
 }
 
 impl Session {
-    /// Connects to `address` (HOST:PORT) and says hello. With a `filter`, only paths that it wants
-    /// come.
+    /// Connects to `peer` and says hello. With a `filter`, only paths that it wants come.
     pub async fn open(
-        address: &str,
+        peer: &Peer,
         viewer_name: &str,
         filter: Option<WantedFilter>,
     ) -> Result<Self, SessionError> {
-        let bad = |_| SessionError::BadAddress(address.to_owned());
-        let endpoint = Endpoint::from_shared(format!("http://{address}"))
-            .map_err(bad)?
-            .connect_timeout(CONNECT_TIMEOUT)
-            .initial_stream_window_size(WINDOW_BYTES)
-            .initial_connection_window_size(WINDOW_BYTES)
-            .http2_keep_alive_interval(PING_INTERVAL)
-            .keep_alive_timeout(PING_TIMEOUT);
-        let unreachable = |_| SessionError::Unreachable(address.to_owned());
-        let channel = endpoint.connect().await.map_err(unreachable)?;
-        let mut client = TracerClient::new(channel).max_decoding_message_size(MAX_MESSAGE_BYTES);
+        if peer.exposes_token() {
+            return Err(SessionError::ExposedToken(peer.address.clone()));
+        }
+        let tune = |endpoint: Endpoint| {
+            endpoint
+                .connect_timeout(CONNECT_TIMEOUT)
+                .initial_stream_window_size(WINDOW_BYTES)
+                .initial_connection_window_size(WINDOW_BYTES)
+                .http2_keep_alive_interval(PING_INTERVAL)
+                .keep_alive_timeout(PING_TIMEOUT)
+        };
+        let channel = tls::connect(peer, tune).await?;
+        let mut client = TracerClient::with_interceptor(channel, peer.token.clone())
+            .max_decoding_message_size(MAX_MESSAGE_BYTES);
 
         let (outgoing, outbox) = mpsc::channel(OUTBOX);
         let hello = ViewerEvent::Hello(Hello {
@@ -98,7 +127,15 @@ impl Session {
         // The outbox is empty and its other end is held here.
         let sent = outgoing.try_send(hello.into());
         debug_assert!(sent.is_ok(), "an empty outbox has room");
-        let incoming = client.watch(ReceiverStream::new(outbox)).await?.into_inner();
+        let answer = client.watch(ReceiverStream::new(outbox)).await;
+        let incoming = answer.map_err(|status| match status.code() {
+            // What a peer that speaks TLS, or anything but gRPC, makes of a greeting.
+            Code::Internal | Code::Unavailable | Code::Cancelled | Code::Unknown => {
+                SessionError::NoGreeting(peer.address.clone())
+            }
+            _ => SessionError::from(status),
+        })?;
+        let incoming = incoming.into_inner();
         Ok(Self { client, incoming, outgoing })
     }
 
@@ -133,7 +170,7 @@ impl Session {
 /// Fetches the scene beside a running session.
 #[derive(Debug)]
 pub struct SceneFetcher {
-    client: TracerClient<Channel>,
+    client: Client,
 }
 
 impl SceneFetcher {

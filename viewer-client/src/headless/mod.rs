@@ -7,7 +7,7 @@ use anyhow::{Context as _, bail};
 use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration, WgpuSetup};
 
 use crate::app::Viewer;
-use crate::connection::{Link, Waker};
+use crate::connection::{Link, Peer, Waker};
 use crate::gpu::{Quality, Renderer};
 use crate::window;
 
@@ -30,14 +30,14 @@ pub enum Wait {
 /// Connects, waits, and writes the picture.
 pub fn run(
     mut viewer: Viewer,
-    address: String,
+    peer: Peer,
     size: [u32; 2],
     wait: Wait,
     file: &Path,
 ) -> anyhow::Result<()> {
     let mut stage = Stage::new(size)?;
     let waker: Waker = Box::new(|| {});
-    viewer.set_link(Link::start(address, waker)?);
+    viewer.set_link(Link::start(peer, waker)?);
     wait_for(&mut viewer, wait)?;
     let image = stage.settled(&mut viewer)?;
     image.save(file).with_context(|| format!("cannot write {}", file.display()))
