@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::chain::{ChainStatistics, Ensemble, EnsembleSettings};
 use crate::film::Film;
+use crate::integrator::pssmlt::{PrimaryEnsemble, PrimarySettings, STEPS};
 use crate::integrator::{BidirectionalTracer, PathTracer};
 use crate::path::Failure;
 use crate::scene::{RayCounts, Scene};
@@ -17,6 +18,8 @@ use crate::scene::{RayCounts, Scene};
 pub enum Integrator {
     /// Metropolis light transport.
     Mlt,
+    /// Metropolis light transport in primary-sample space.
+    Pssmlt,
     /// Bidirectional path tracing.
     Bdpt,
     /// Path tracing with light sampling.
@@ -28,6 +31,7 @@ impl Integrator {
     pub fn name(self) -> &'static str {
         match self {
             Self::Mlt => "mlt",
+            Self::Pssmlt => "pssmlt",
             Self::Bdpt => "bdpt",
             Self::Path => "path",
         }
@@ -50,8 +54,10 @@ pub struct RenderSettings {
     pub integrator: Integrator,
     /// When to stop.
     pub budget: Budget,
-    /// Chains, threads and seed; the chains matter to [`Integrator::Mlt`] only.
+    /// Seed and threads, and the chains of [`Integrator::Mlt`] and [`Integrator::Pssmlt`].
     pub ensemble: EnsembleSettings,
+    /// What [`Integrator::Pssmlt`] needs besides.
+    pub primary: PrimarySettings,
 }
 
 /// An image with the story of how it was made.
@@ -72,6 +78,10 @@ pub struct Report {
     pub scene_hash: String,
     /// Name of the integrator.
     pub integrator: String,
+    /// Renderer behind primary-sample space; none for other integrators.
+    pub primary_sampler: Option<&'static str>,
+    /// Probability of a large step in primary-sample space.
+    pub large_step: Option<f64>,
     /// Number of the run.
     pub seed: u64,
     /// Width in pixels.
@@ -138,6 +148,7 @@ pub struct StrategyReport {
 /// One integrator at work.
 enum Work {
     Mlt(Ensemble),
+    Pssmlt(PrimaryEnsemble),
     Bdpt(BidirectionalTracer),
     Path(PathTracer),
 }
@@ -225,13 +236,17 @@ impl Work {
         let seed = settings.ensemble.seed;
         match settings.integrator {
             Integrator::Mlt => Self::Mlt(Ensemble::new(scene, &settings.ensemble, on_seeding)),
+            Integrator::Pssmlt => {
+                let settings = (&settings.ensemble, settings.primary);
+                Self::Pssmlt(PrimaryEnsemble::new(scene, settings, on_seeding))
+            }
             Integrator::Bdpt => Self::Bdpt(BidirectionalTracer::new(scene, seed)),
             Integrator::Path => Self::Path(PathTracer::new(scene, seed)),
         }
     }
 
     fn rounds(&self, scene: &Scene, budget: Budget) -> Rounds {
-        let Self::Mlt(ensemble) = self else {
+        let Some(chains) = self.chain_count() else {
             return match budget {
                 Budget::PerPixel(samples) => Rounds { count: samples.min(100), total: samples },
                 Budget::Time(_) => Rounds { count: u64::MAX, total: 1 },
@@ -241,7 +256,7 @@ impl Work {
         match budget {
             Budget::PerPixel(mutations) => {
                 let all = mutations * scene.camera().pixel_count() as u64;
-                let total = all.div_ceil(ensemble.chain_count().max(1) as u64);
+                let total = all.div_ceil(chains.max(1) as u64);
                 Rounds { count: total.min(100), total }
             }
             Budget::Time(_) => Rounds { count: u64::MAX, total: STEPS_UNDER_A_TIME_LIMIT },
@@ -250,12 +265,22 @@ impl Work {
 
     /// True when no light reaches the film, so that there is nothing to do.
     fn is_dark(&self) -> bool {
-        matches!(self, Self::Mlt(ensemble) if ensemble.chain_count() == 0)
+        self.chain_count() == Some(0)
+    }
+
+    /// Number of chains, where there are any.
+    fn chain_count(&self) -> Option<usize> {
+        match self {
+            Self::Mlt(ensemble) => Some(ensemble.chain_count()),
+            Self::Pssmlt(ensemble) => Some(ensemble.chain_count()),
+            Self::Bdpt(_) | Self::Path(_) => None,
+        }
     }
 
     fn advance(&mut self, scene: &Scene, amount: u64, threads: usize) {
         match self {
             Self::Mlt(ensemble) => drop(ensemble.advance(scene, amount, None)),
+            Self::Pssmlt(ensemble) => ensemble.advance(scene, amount),
             Self::Bdpt(tracer) => tracer.advance(scene, amount, threads),
             Self::Path(tracer) => tracer.advance(scene, amount, threads),
         }
@@ -264,6 +289,7 @@ impl Work {
     fn image(&self, scene: &Scene) -> Film {
         match self {
             Self::Mlt(ensemble) => ensemble.image(scene),
+            Self::Pssmlt(ensemble) => ensemble.image(scene),
             Self::Bdpt(tracer) => tracer.image(scene),
             Self::Path(tracer) => tracer.image(scene),
         }
@@ -273,6 +299,7 @@ impl Work {
         let pixels = scene.camera().pixel_count() as u64;
         match self {
             Self::Mlt(ensemble) => ensemble.steps(),
+            Self::Pssmlt(ensemble) => ensemble.steps(),
             Self::Bdpt(tracer) => tracer.samples() * pixels,
             Self::Path(tracer) => tracer.samples() * pixels,
         }
@@ -280,25 +307,52 @@ impl Work {
 
     /// The part of the report that depends on the integrator.
     fn report(&self, scene: &Scene) -> Report {
-        let ensemble = match self {
-            Self::Mlt(ensemble) => ensemble,
-            Self::Bdpt(tracer) => return ray_report(tracer.rays()),
-            Self::Path(tracer) => return ray_report(tracer.rays()),
-        };
-        let statistics = ensemble.statistics();
-        let (normalization, normalization_error) = ensemble.normalization(scene);
-        Report {
-            chains: ensemble.chain_count(),
-            rays: statistics.rays,
-            shadow_rays: statistics.shadow_rays,
-            normalization,
-            normalization_error,
-            bootstrap_samples: ensemble.bootstrap().sample_count(),
-            longest_dwell: statistics.longest_dwell,
-            not_finite: statistics.not_finite(),
-            strategies: strategy_reports(&ensemble.mixture().names(), &statistics),
-            ..Report::default()
+        match self {
+            Self::Mlt(ensemble) => {
+                let bootstrap_samples = ensemble.bootstrap().sample_count();
+                let names = ensemble.mixture().names();
+                let statistics = ensemble.statistics();
+                let normalization = ensemble.normalization(scene);
+                Report {
+                    chains: ensemble.chain_count(),
+                    bootstrap_samples,
+                    ..chain_report(&names, &statistics, normalization)
+                }
+            }
+            Self::Pssmlt(ensemble) => {
+                let PrimarySettings { sampler, large_step } = ensemble.settings();
+                let names = STEPS.map(str::to_owned);
+                let statistics = ensemble.statistics();
+                let normalization = ensemble.normalization(scene);
+                Report {
+                    chains: ensemble.chain_count(),
+                    bootstrap_samples: ensemble.pool().sample_count(),
+                    primary_sampler: Some(sampler.name()),
+                    large_step: Some(large_step),
+                    ..chain_report(&names, &statistics, normalization)
+                }
+            }
+            Self::Bdpt(tracer) => ray_report(tracer.rays()),
+            Self::Path(tracer) => ray_report(tracer.rays()),
         }
+    }
+}
+
+/// What chains have done; `normalization` comes with its standard error.
+fn chain_report(
+    names: &[String],
+    statistics: &ChainStatistics,
+    (normalization, normalization_error): (f64, f64),
+) -> Report {
+    Report {
+        rays: statistics.rays,
+        shadow_rays: statistics.shadow_rays,
+        normalization,
+        normalization_error,
+        longest_dwell: statistics.longest_dwell,
+        not_finite: statistics.not_finite(),
+        strategies: strategy_reports(names, statistics),
+        ..Report::default()
     }
 }
 

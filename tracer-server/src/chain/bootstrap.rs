@@ -1,15 +1,9 @@
 //! The pool of bidirectional samples that gives both the normalisation and the chains' seeds.
-//!
-//! Because both come from one pool, the image is unbiased however short the chains are
-//! [Veach 1997, section 11.3.1].
 
-use crate::math::{Accumulator, Rng, Stream};
-use crate::parallel;
+use super::{EnsembleSettings, Pool};
+use crate::math::{Rng, Stream};
 use crate::path::{Aim, BidirectionalSampler, Path};
 use crate::scene::{Scene, Tracer};
-
-/// Samples that one worker draws in one go.
-const CHUNK: u64 = 2048;
 
 /// How large the pool may become.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,123 +22,69 @@ pub struct BootstrapSettings {
     pub chains: u32,
 }
 
+impl From<&EnsembleSettings> for BootstrapSettings {
+    fn from(settings: &EnsembleSettings) -> Self {
+        Self {
+            seed: settings.seed,
+            threads: settings.threads,
+            min_samples: (settings.bootstrap_samples / 8).max(1),
+            max_samples: settings.bootstrap_samples,
+            relative_error: 0.003,
+            chains: settings.chains,
+        }
+    }
+}
+
 /// The pool, reduced to what is needed of it.
 #[derive(Clone, Debug)]
 pub struct Bootstrap {
     seed: u64,
-    weights: Vec<f64>,
-    total: Accumulator,
-    energy: Vec<f64>,
-}
-
-/// What one chunk of samples yields.
-struct Chunk {
-    weights: Vec<f64>,
-    energy: Vec<f64>,
+    pool: Pool,
 }
 
 impl Bootstrap {
     /// Draws samples until the normalisation is good enough and the seeds are diverse, or until
     /// the budget is spent. `on_progress` hears the number of samples drawn.
-    pub fn new(
-        scene: &Scene,
-        settings: &BootstrapSettings,
-        mut on_progress: impl FnMut(u64),
-    ) -> Self {
-        let mut pool = Self {
-            seed: settings.seed,
-            weights: Vec::new(),
-            total: Accumulator::default(),
-            energy: vec![0.0; scene.max_edges() + 1],
-        };
-        let mut target = settings.min_samples.max(CHUNK);
-        loop {
-            let first = pool.weights.len() as u64 / CHUNK;
-            for chunk in draw_chunks(scene, settings, first..target.div_ceil(CHUNK)) {
-                chunk.weights.iter().for_each(|&w| pool.total.add(w));
-                pool.weights.extend(chunk.weights);
-                for (sum, energy) in pool.energy.iter_mut().zip(chunk.energy) {
-                    *sum += energy;
-                }
-            }
-            let drawn = pool.weights.len() as u64;
-            on_progress(drawn);
-            if pool.is_good(settings) || drawn >= settings.max_samples {
-                return pool;
-            }
-            target = (2 * drawn).min(settings.max_samples);
-        }
-    }
-
-    fn is_good(&self, settings: &BootstrapSettings) -> bool {
-        let precise = self.normalization_error() <= settings.relative_error * self.normalization();
-        let sum = self.total.sum();
-        let diversity = sum * sum / self.total.sum_of_squares();
-        precise && diversity >= 10.0 * f64::from(settings.chains)
+    pub fn new(scene: &Scene, settings: &BootstrapSettings, on_progress: impl FnMut(u64)) -> Self {
+        let seed = settings.seed;
+        let pool = Pool::new(
+            settings,
+            scene.max_edges() + 1,
+            || Replay::new(scene, seed),
+            Replay::weight,
+            on_progress,
+        );
+        Self { seed, pool }
     }
 
     /// `b`: the mean luminance of the image, in film units of the scene.
     pub fn normalization(&self) -> f64 {
-        self.total.mean()
+        self.pool.normalization()
     }
 
     /// Standard error of `b`.
     pub fn normalization_error(&self) -> f64 {
-        self.total.standard_error()
+        self.pool.normalization_error()
     }
 
     /// Number of samples.
     pub fn sample_count(&self) -> u64 {
-        self.total.count()
+        self.pool.sample_count()
     }
 
     /// Entry `k`: the light that paths of `k` edges carry, relative to the others.
     pub fn energy(&self) -> &[f64] {
-        &self.energy
+        self.pool.tally()
     }
 
-    /// `count` seeds by systematic resampling: one random offset, equal distances along the
-    /// cumulated weights. Empty when no sample carries light.
+    /// `count` seeds by systematic resampling of the pool, and among the paths of each sample.
+    /// Empty when no sample carries light.
     pub fn seeds(&self, scene: &Scene, count: u32) -> Vec<Path> {
-        let total: f64 = self.weights.iter().sum();
-        if !(total > 0.0) {
-            return Vec::new();
-        }
         let mut rng = Rng::new(self.seed, Stream::Resampling, 0);
-        let offset = rng.uniform();
-        let mut seeds = Vec::with_capacity(count as usize);
         let mut replay = Replay::new(scene, self.seed);
-        let (mut sample, mut cumulated) = (0, self.weights[0]);
-        for j in 0..count {
-            let position = (offset + f64::from(j)) / f64::from(count) * total;
-            while cumulated <= position && sample + 1 < self.weights.len() {
-                sample += 1;
-                cumulated += self.weights[sample];
-            }
-            // Rounding at the end of the table could stop at a sample without light.
-            while self.weights[sample] == 0.0 {
-                sample -= 1;
-            }
-            seeds.push(replay.pick(sample as u64, self.weights[sample], rng.uniform()));
-        }
-        seeds
+        let samples = self.pool.resample(count, &mut rng);
+        samples.into_iter().map(|(n, weight)| replay.pick(n, weight, rng.uniform())).collect()
     }
-}
-
-/// Draws the chunks with the given numbers, on several threads, and returns them in order.
-fn draw_chunks(
-    scene: &Scene,
-    settings: &BootstrapSettings,
-    chunks: std::ops::Range<u64>,
-) -> Vec<Chunk> {
-    let mut results: Vec<Option<Chunk>> = chunks.clone().map(|_| None).collect();
-    parallel::for_each(
-        settings.threads,
-        chunks.zip(results.iter_mut()),
-        || Replay::new(scene, settings.seed),
-        |replay, (number, slot)| *slot = Some(replay.chunk(number)),
-    );
-    results.into_iter().flatten().collect()
 }
 
 /// Rebuilds samples of the pool from their keys.
@@ -174,13 +114,6 @@ impl<'s> Replay<'s> {
             energy[path.edge_count()] += weight;
         });
         sum
-    }
-
-    fn chunk(&mut self, number: u64) -> Chunk {
-        let mut energy = vec![0.0; self.scene.max_edges() + 1];
-        let first = number * CHUNK;
-        let weights = (first..first + CHUNK).map(|n| self.weight(n, &mut energy)).collect();
-        Chunk { weights, energy }
     }
 
     /// One path of a sample, chosen by `u` in proportion to the paths' weights.

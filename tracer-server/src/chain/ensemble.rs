@@ -4,7 +4,7 @@ use std::thread;
 
 use common::{ChainId, PathBatch};
 
-use super::{Bootstrap, BootstrapSettings, Chain, ChainStatistics, Watch};
+use super::{Bootstrap, Chain, ChainStatistics, Watch};
 use crate::film::Film;
 use crate::mutation::{Mixture, MixtureBasis, StrategyOptions};
 use crate::parallel;
@@ -65,15 +65,7 @@ impl Ensemble {
     /// Seeds the chains. Without light on the film there are no chains and the image stays black.
     /// `on_progress` hears the number of samples drawn for the seeds.
     pub fn new(scene: &Scene, settings: &EnsembleSettings, on_progress: impl FnMut(u64)) -> Self {
-        let bootstrap_settings = BootstrapSettings {
-            seed: settings.seed,
-            threads: settings.threads,
-            min_samples: (settings.bootstrap_samples / 8).max(1),
-            max_samples: settings.bootstrap_samples,
-            relative_error: 0.003,
-            chains: settings.chains,
-        };
-        let bootstrap = Bootstrap::new(scene, &bootstrap_settings, on_progress);
+        let bootstrap = Bootstrap::new(scene, &settings.into(), on_progress);
         let camera = scene.camera();
         let basis = MixtureBasis {
             camera,

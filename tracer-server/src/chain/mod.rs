@@ -2,6 +2,7 @@
 
 mod bootstrap;
 mod ensemble;
+mod pool;
 mod statistics;
 mod watch;
 
@@ -15,6 +16,7 @@ use crate::scene::Tracer;
 
 pub use bootstrap::{Bootstrap, BootstrapSettings};
 pub use ensemble::{Ensemble, EnsembleSettings, LANES};
+pub use pool::Pool;
 pub use statistics::{ChainStatistics, StrategyCounts};
 pub use watch::Watch;
 

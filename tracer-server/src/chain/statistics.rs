@@ -41,8 +41,9 @@ impl ChainStatistics {
         Self { strategies: vec![StrategyCounts::default(); strategies], ..Self::default() }
     }
 
+    /// Counts one step.
     #[inline]
-    pub(super) fn record(&mut self, step: &Step) {
+    pub fn record(&mut self, step: &Step) {
         self.steps += 1;
         let counts = &mut self.strategies[step.strategy];
         counts.proposed += 1;
@@ -57,7 +58,8 @@ impl ChainStatistics {
         }
     }
 
-    pub(super) fn leave(&mut self, dwell: u64) {
+    /// Counts that a state was left after `dwell` steps.
+    pub fn leave(&mut self, dwell: u64) {
         self.longest_dwell = self.longest_dwell.max(dwell);
     }
 

@@ -16,6 +16,7 @@ use super::chains::ChainArgs;
 use super::input::{self, FilmSize};
 use super::meter::Meter;
 use crate::image_file;
+use crate::integrator::pssmlt::{PrimarySampler, PrimarySettings};
 use crate::render::{Budget, Integrator, Progress, RenderSettings, Rendering, Report, render};
 use crate::scene::MAX_EDGES;
 
@@ -32,6 +33,7 @@ Examples:
   tracer-server render cornell -o cornell.exr --integrator bdpt --mutations-per-pixel 64
   tracer-server render caustic -o caustic.exr --time 30 --reference reference.exr
   tracer-server render caustic -o plain.exr --without caustic,multi-chain --tune lens.radius=0.5..8
+  tracer-server render door -o pss.exr --integrator pssmlt --primary-sampler path --large-step 0.2
   tracer-server render scenes/room.toml -o room.exr --width 640 --height 480 --stats-json room.json")]
 pub struct RenderArgs {
     /// A built-in scene, a .toml, .obj or Mitsuba .xml file, or a directory that holds one.
@@ -52,6 +54,9 @@ pub struct RenderArgs {
     /// The chains.
     #[command(flatten)]
     pub chains: ChainArgs,
+    /// What `--integrator pssmlt` needs besides.
+    #[command(flatten)]
+    pub primary: PrimaryArgs,
     /// The film.
     #[command(flatten)]
     pub film: FilmSize,
@@ -68,11 +73,54 @@ pub struct RenderArgs {
     pub stats_json: Option<PathBuf>,
 }
 
+/// How chains move in primary-sample space.
+#[derive(Args, Clone, Debug, Default)]
+pub struct PrimaryArgs {
+    /// The renderer whose random numbers `--integrator pssmlt` moves [default: bdpt].
+    #[arg(long, value_enum, value_name = "RENDERER")]
+    pub primary_sampler: Option<PrimarySamplerName>,
+    /// Share of the steps of `--integrator pssmlt` that draw all numbers anew [default: 0.3].
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    pub large_step: Option<f64>,
+}
+
+/// The renderers behind primary-sample space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PrimarySamplerName {
+    /// Bidirectional path tracing.
+    Bdpt,
+    /// Path tracing with light sampling; cannot find caustics of lights that nothing can hit.
+    Path,
+}
+
+impl PrimaryArgs {
+    fn settings(&self, integrator: IntegratorName) -> anyhow::Result<PrimarySettings> {
+        let usual = PrimarySettings::default();
+        let silent = self.primary_sampler.is_none() && self.large_step.is_none();
+        ensure!(
+            silent || integrator == IntegratorName::Pssmlt,
+            "--primary-sampler and --large-step are for --integrator pssmlt"
+        );
+        let sampler = self.primary_sampler.map_or(usual.sampler, |name| match name {
+            PrimarySamplerName::Bdpt => PrimarySampler::Bdpt,
+            PrimarySamplerName::Path => PrimarySampler::Path,
+        });
+        Ok(PrimarySettings { sampler, large_step: self.large_step.unwrap_or(usual.large_step) })
+    }
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "give a number from 0 to 1".to_owned())
+}
+
 /// The integrators by the names they have on the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum IntegratorName {
     /// Metropolis light transport.
     Mlt,
+    /// Metropolis light transport over the random numbers of a renderer.
+    Pssmlt,
     /// Bidirectional path tracing.
     Bdpt,
     /// Path tracing with light sampling.
@@ -83,6 +131,7 @@ impl From<IntegratorName> for Integrator {
     fn from(name: IntegratorName) -> Self {
         match name {
             IntegratorName::Mlt => Self::Mlt,
+            IntegratorName::Pssmlt => Self::Pssmlt,
             IntegratorName::Bdpt => Self::Bdpt,
             IntegratorName::Path => Self::Path,
         }
@@ -122,6 +171,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<ExitCode> {
             (None, mutations) => Budget::PerPixel(mutations.unwrap_or(DEFAULT_PER_PIXEL)),
         },
         ensemble: args.chains.ensemble(&scene, &wishes)?,
+        primary: args.primary.settings(args.integrator)?,
     };
     let what = format!("{}, {}", scene.name(), settings.integrator.name());
     let meter = Meter::new(what, "rendered");
@@ -165,7 +215,14 @@ fn metadata(report: &Report) -> Vec<(String, String)> {
         ("wall_seconds", &report.wall_seconds),
         ("cpu_seconds", &report.cpu_seconds),
     ];
-    entries.map(|(key, value)| (format!("lvis.{key}"), value.to_string())).into()
+    let sampler = report.primary_sampler.map(|name| ("primary_sampler", name.to_owned()));
+    let large_step = report.large_step.map(|share| ("large_step", share.to_string()));
+    let entries = entries.into_iter().map(|(key, value)| (key, value.to_string()));
+    entries
+        .chain(sampler)
+        .chain(large_step)
+        .map(|(key, value)| (format!("lvis.{key}"), value))
+        .collect()
 }
 
 fn show(meter: &Meter, progress: Progress) {
@@ -297,7 +354,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let image = folder.path().join("a.exr");
         let json = folder.path().join("a.json");
-        for integrator in ["mlt", "bdpt", "path"] {
+        for integrator in ["mlt", "pssmlt", "bdpt", "path"] {
             let line = format!(
                 "tracer-server render cornell --width 16 --height 16 --mutations-per-pixel 4 \
                  --chains 16 --integrator {integrator} -o {} --stats-json {}",

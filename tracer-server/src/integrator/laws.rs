@@ -4,6 +4,7 @@ use common::Rgb;
 use glam::DVec3;
 use tests::{Accumulator, Suite, ZScore, block_means, z_map};
 
+use super::pssmlt::{PrimaryEnsemble, PrimarySampler, PrimarySettings};
 use super::{BidirectionalTracer, PathTracer};
 use crate::chain::{Ensemble, EnsembleSettings};
 use crate::film::Film;
@@ -44,6 +45,13 @@ fn metropolis(scene: &Scene, seed: u64, steps: u64) -> Film {
     ensemble.image(scene)
 }
 
+fn primary_sample(scene: &Scene, sampler: PrimarySampler, seed: u64, steps: u64) -> Film {
+    let primary = PrimarySettings { sampler, ..PrimarySettings::default() };
+    let mut ensemble = PrimaryEnsemble::new(scene, (&settings(seed, 64), primary), |_| ());
+    ensemble.advance(scene, steps);
+    ensemble.image(scene)
+}
+
 fn pixels(film: &Film) -> Vec<[f64; 3]> {
     film.pixels().iter().map(|&pixel| pixel.into()).collect()
 }
@@ -76,11 +84,18 @@ fn assert_agreement(name: &str, fixture: Fixture) {
     let by_mlt = runs(|seed| metropolis(&scene, seed + 200, 3000));
     let features = scene.features();
     // A path tracer cannot find the caustics of lights that nothing can hit.
-    if features.hittable || !features.specular {
+    let path_finds_all = features.hittable || !features.specular;
+    if path_finds_all {
         let by_path = runs(|seed| path_traced(&scene, seed, 128));
         compare(&format!("{name}: path and bdpt"), &by_path, &by_bdpt, 16);
     }
     compare(&format!("{name}: bdpt and mlt"), &by_bdpt, &by_mlt, 16);
+    let samplers = [(PrimarySampler::Bdpt, 300, 1000), (PrimarySampler::Path, 400, 3000)];
+    for (sampler, seed, steps) in samplers.into_iter().take(1 + usize::from(path_finds_all)) {
+        let by_pssmlt = runs(|run| primary_sample(&scene, sampler, seed + run, steps));
+        let what = format!("{name}: bdpt and pssmlt over {}", sampler.name());
+        compare(&what, &by_bdpt, &by_pssmlt, 16);
+    }
 }
 
 #[test]
@@ -316,6 +331,18 @@ fn the_number_of_threads_changes_no_bit() {
     let alone = render(1);
     assert_eq!(alone, render(2), "mlt on two threads");
     assert_eq!(alone, render(5), "mlt on five threads");
+    for sampler in [PrimarySampler::Bdpt, PrimarySampler::Path] {
+        let by_pssmlt = |threads| {
+            let chains = EnsembleSettings { threads, ..settings(4, 24) };
+            let primary = PrimarySettings { sampler, ..PrimarySettings::default() };
+            let mut ensemble = PrimaryEnsemble::new(&scene, (&chains, primary), |_| ());
+            ensemble.advance(&scene, 200);
+            ensemble.advance(&scene, 200);
+            bits(&ensemble.image(&scene))
+        };
+        assert_eq!(by_pssmlt(1), by_pssmlt(2), "pssmlt on two threads");
+        assert_eq!(by_pssmlt(1), by_pssmlt(5), "pssmlt on five threads");
+    }
     let by_path = |threads| {
         let mut tracer = PathTracer::new(&scene, 4);
         tracer.advance(&scene, 2, threads);
@@ -417,4 +444,6 @@ fn a_scene_without_light_on_the_film_stays_black() {
     ensemble.advance(&scene, 100, None);
     assert_eq!(ensemble.chain_count(), 0, "there is nothing to start from");
     assert!(ensemble.image(&scene).pixels().iter().all(|p| p.is_black()), "black, not NaN");
+    let image = primary_sample(&scene, PrimarySampler::Bdpt, 0, 100);
+    assert!(image.pixels().iter().all(|p| p.is_black()), "black, not NaN");
 }

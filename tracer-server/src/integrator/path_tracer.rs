@@ -10,7 +10,7 @@ use crate::bsdf::Scatter as _;
 use crate::film::Film;
 use crate::math::{Rng, Stream};
 use crate::parallel;
-use crate::path::{Aim, Vertex, extend, light_vertex, scatter};
+use crate::path::{Aim, Numbers, ROW, Strand, Vertex, extend, light_vertex, scatter};
 use crate::scene::{RayCounts, Scene, Tracer};
 
 /// Edges that every path gets before Russian roulette begins.
@@ -97,7 +97,7 @@ fn sample_pixel(scene: &Tracer<'_>, x: usize, y: usize, rng: &mut Rng) -> Rgb {
 }
 
 /// Radiance that arrives at the lens by the ray `aim`.
-fn radiance(scene: &Tracer<'_>, aim: &Aim, rng: &mut Rng) -> Rgb {
+pub(super) fn radiance(scene: &Tracer<'_>, aim: &Aim, numbers: &mut impl Numbers) -> Rgb {
     let mut direction = aim.direction(scene);
     let mut sum = Rgb::BLACK;
     let mut throughput = Rgb::WHITE;
@@ -112,17 +112,19 @@ fn radiance(scene: &Tracer<'_>, aim: &Aim, rng: &mut Rng) -> Rgb {
         }
         let bsdf = scene.bsdf(next.material);
         if bsdf.connectable().is_some() {
-            sum += throughput * sample_light(scene, &next, -direction, rng.array());
+            let u = numbers.row(Strand::Connection, edges);
+            sum += throughput * sample_light(scene, &next, -direction, u);
         }
+        let [u @ .., roulette] = numbers.row::<ROW>(Strand::Eye, edges);
         if edges >= SURE_EDGES {
             let chance = bsdf.albedo().clamp(0.1, 0.95);
-            if rng.uniform() >= chance {
+            if roulette >= chance {
                 break;
             }
             throughput = throughput / chance;
         }
         let back = -direction;
-        let Ok(onward) = scatter(scene, &mut next, back, rng.array()) else { break };
+        let Ok(onward) = scatter(scene, &mut next, back, u) else { break };
         let local = scene.local(&next.anchor(), next.material);
         let Some(s) = local.evaluate(onward, back, next.event) else { break };
         throughput *= s.color * s.eye_weight;

@@ -23,6 +23,8 @@ pub enum Stream {
     Census = 8,
     /// Tests and benchmarks.
     Laboratory = 6,
+    /// The coordinates of one chain in primary-sample space.
+    Coordinates = 9,
 }
 
 /// A random stream: xoshiro256++ keyed by a hash of (seed, purpose, index).

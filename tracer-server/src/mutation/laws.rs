@@ -12,8 +12,8 @@ use super::{
 use crate::math::{Rng, Stream};
 use crate::path::{Aim, BidirectionalSampler, Draft, Failure, Path};
 use crate::scene::fixtures::{
-    Fixture, coated_room, diffuse_room, every_light, floor_through_glass, saturated_room,
-    slab_over_floor, specular_room, wall_and_lamp_in_a_pane, wall_in_a_pane,
+    Fixture, bumpy_room, coated_room, diffuse_room, every_light, floor_through_glass,
+    saturated_room, slab_over_floor, specular_room, wall_and_lamp_in_a_pane, wall_in_a_pane,
 };
 use crate::scene::{Scene, Tracer};
 use crate::verify::invariance::{Propose, Run, Test};
@@ -187,8 +187,10 @@ fn primary_leaves_the_target_alone() {
         ("specular", specular_room()),
         ("glass", floor_through_glass()),
         ("slab", slab_over_floor(true)),
+        ("coated", coated_room()),
+        ("bumpy", bumpy_room()),
     ];
-    for (name, fixture) in scenes {
+    for (name, fixture) in scenes.into_iter().chain(every_light()) {
         let scene = fixture.build();
         let mutation = Primary::default();
         assert_lawful(&format!("primary, {name}"), &scene, &strategy(&mutation));

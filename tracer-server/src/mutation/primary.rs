@@ -38,7 +38,9 @@ impl Numbers for Moved<'_> {
     #[inline]
     fn row<const N: usize>(&mut self, strand: Strand, row: usize) -> [f64; N] {
         match (self.step, self.tape.row(strand, row)) {
-            (Some(step), Some(row)) => std::array::from_fn(|i| step.apply(row[i], self.rng)),
+            (Some(step), Some(row)) => {
+                std::array::from_fn(|i| step.apply(row[i], self.rng.uniform()))
+            }
             // The walks of a proposal are as long as those on the tape, and ask for no more.
             _ => self.rng.array(),
         }

@@ -21,7 +21,7 @@ pub use assemble::Splice;
 pub use bidirectional::BidirectionalSampler;
 pub use class::ClassKey;
 pub use failure::Failure;
-pub use numbers::{Numbers, ROW, Strand};
+pub use numbers::{Numbers, ROW, STRANDS, Strand};
 pub use resample::{Draft, Range, end_on_light, open_for_connection, resample};
 pub use tape::Tape;
 pub use vertex::Vertex;

@@ -27,6 +27,9 @@ impl Strand {
     }
 }
 
+/// Number of strands.
+pub const STRANDS: usize = Strand::Connection as usize + 1;
+
 /// Most numbers of one row: an event, a direction and Russian roulette, or film and lens point.
 pub const ROW: usize = 4;
 
