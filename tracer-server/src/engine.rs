@@ -70,6 +70,9 @@ fn run(scene: &Scene, settings: &EnsembleSettings, hub: &Hub, stop: &AtomicBool)
     if error > 0.01 * b {
         warn!("the mean luminance is known to {:.1} % only", 100.0 * error / b);
     }
+    for prospect in ensemble.prospects() {
+        info!("{prospect}");
+    }
     let steps = (ROUND_MUTATIONS / ensemble.chain_count() as u64).max(1);
     let mut reporter = Reporter::new(settings);
     while !stop.load(Ordering::Relaxed) {

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use cpu_time::ProcessTime;
 use serde::Serialize;
 
-use crate::chain::{ChainStatistics, Ensemble, EnsembleSettings};
+use crate::chain::{ChainStatistics, Ensemble, EnsembleSettings, Prospect};
 use crate::film::Film;
 use crate::integrator::pssmlt::{PrimaryEnsemble, PrimarySettings, STEPS};
 use crate::integrator::{BidirectionalTracer, PathTracer};
@@ -120,6 +120,9 @@ pub struct Report {
     pub not_finite: u64,
     /// One entry a strategy.
     pub strategies: Vec<StrategyReport>,
+    /// What the pilot found of each strategy before the chains started; empty for other
+    /// integrators.
+    pub prospects: Vec<Prospect>,
     /// Mean of the image in each channel.
     pub mean: [f64; 3],
     /// Relative mean squared error against the reference, if there was one.
@@ -316,6 +319,7 @@ impl Work {
                 Report {
                     chains: ensemble.chain_count(),
                     bootstrap_samples,
+                    prospects: ensemble.prospects().to_vec(),
                     ..chain_report(&names, &statistics, normalization)
                 }
             }

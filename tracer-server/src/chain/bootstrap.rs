@@ -47,13 +47,7 @@ impl Bootstrap {
     /// the budget is spent. `on_progress` hears the number of samples drawn.
     pub fn new(scene: &Scene, settings: &BootstrapSettings, on_progress: impl FnMut(u64)) -> Self {
         let seed = settings.seed;
-        let pool = Pool::new(
-            settings,
-            scene.max_edges() + 1,
-            || Replay::new(scene, seed),
-            Replay::weight,
-            on_progress,
-        );
+        let pool = Pool::new(settings, || Replay::new(scene, seed), Replay::weight, on_progress);
         Self { seed, pool }
     }
 
@@ -70,11 +64,6 @@ impl Bootstrap {
     /// Number of samples.
     pub fn sample_count(&self) -> u64 {
         self.pool.sample_count()
-    }
-
-    /// Entry `k`: the light that paths of `k` edges carry, relative to the others.
-    pub fn energy(&self) -> &[f64] {
-        self.pool.tally()
     }
 
     /// `count` seeds by systematic resampling of the pool, and among the paths of each sample.
@@ -107,12 +96,9 @@ impl<'s> Replay<'s> {
         self.sampler.sample(&self.scene, aim, &mut rng, visit);
     }
 
-    fn weight(&mut self, number: u64, energy: &mut [f64]) -> f64 {
+    fn weight(&mut self, number: u64) -> f64 {
         let mut sum = 0.0;
-        self.sample(number, |path, weight| {
-            sum += weight;
-            energy[path.edge_count()] += weight;
-        });
+        self.sample(number, |_, weight| sum += weight);
         sum
     }
 

@@ -4,9 +4,9 @@ use std::thread;
 
 use common::{ChainId, PathBatch};
 
-use super::{Bootstrap, Chain, ChainStatistics, Watch};
+use super::{Bootstrap, Chain, ChainStatistics, PilotSettings, Prospect, Watch, explore};
 use crate::film::Film;
-use crate::mutation::{Mixture, MixtureBasis, StrategyOptions};
+use crate::mutation::{Mixture, StrategyOptions};
 use crate::parallel;
 use crate::scene::{RayCounts, Scene, Tracer};
 
@@ -16,6 +16,9 @@ use crate::scene::{RayCounts, Scene, Tracer};
 /// worked on by one thread at a time, so the image does not depend on the number of threads; no
 /// more threads than this have work.
 pub const LANES: usize = 8;
+
+/// The pilot has one sample for each so many of the largest pool.
+const PILOT_SHARE: u64 = 32;
 
 /// How chains are run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +51,7 @@ impl Default for EnsembleSettings {
 #[derive(Debug)]
 pub struct Ensemble {
     mixture: Mixture,
+    prospects: Vec<Prospect>,
     bootstrap: Bootstrap,
     lanes: Vec<Lane>,
     threads: usize,
@@ -67,13 +71,12 @@ impl Ensemble {
     pub fn new(scene: &Scene, settings: &EnsembleSettings, on_progress: impl FnMut(u64)) -> Self {
         let bootstrap = Bootstrap::new(scene, &settings.into(), on_progress);
         let camera = scene.camera();
-        let basis = MixtureBasis {
-            camera,
-            max_edges: scene.max_edges(),
-            features: scene.features(),
-            energy: bootstrap.energy(),
+        let pilot = PilotSettings {
+            seed: settings.seed,
+            threads: settings.threads,
+            samples: settings.bootstrap_samples.div_ceil(PILOT_SHARE),
         };
-        let mixture = Mixture::new(&settings.strategies, &basis);
+        let (mixture, prospects) = explore(scene, &settings.strategies, &pilot);
         let mut lanes: Vec<Lane> = (0..LANES)
             .map(|_| Lane {
                 film: Film::new(camera.width, camera.height),
@@ -86,7 +89,8 @@ impl Ensemble {
             let chain = Chain::new(ChainId(id), settings.seed, seed, &mixture);
             lanes[id as usize % LANES].chains.push(chain);
         }
-        Self { mixture, bootstrap, lanes, threads: settings.threads.max(1), steps: 0 }
+        let threads = settings.threads.max(1);
+        Self { mixture, prospects, bootstrap, lanes, threads, steps: 0 }
     }
 
     /// The pool behind the seeds.
@@ -97,6 +101,11 @@ impl Ensemble {
     /// The strategies.
     pub fn mixture(&self) -> &Mixture {
         &self.mixture
+    }
+
+    /// What the pilot found of each strategy, and the weights that follow.
+    pub fn prospects(&self) -> &[Prospect] {
+        &self.prospects
     }
 
     /// Number of chains.

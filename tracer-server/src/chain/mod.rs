@@ -2,6 +2,7 @@
 
 mod bootstrap;
 mod ensemble;
+mod pilot;
 mod pool;
 mod statistics;
 mod watch;
@@ -16,6 +17,7 @@ use crate::scene::Tracer;
 
 pub use bootstrap::{Bootstrap, BootstrapSettings};
 pub use ensemble::{Ensemble, EnsembleSettings, LANES};
+pub use pilot::{PilotSettings, Prospect, explore};
 pub use pool::Pool;
 pub use statistics::{ChainStatistics, StrategyCounts};
 pub use watch::Watch;

@@ -15,48 +15,35 @@ const CHUNK: u64 = 2048;
 pub struct Pool {
     weights: Vec<f64>,
     total: Accumulator,
-    tally: Vec<f64>,
-}
-
-/// What one chunk of samples yields.
-struct Chunk {
-    weights: Vec<f64>,
-    tally: Vec<f64>,
 }
 
 impl Pool {
     /// Draws samples until the mean weight is known well enough and the starts are diverse, or until
     /// the budget is spent.
     ///
-    /// `weigh` gives the weight of the sample with a number, and adds what else is wanted of it to a
-    /// tally of `entries` sums; `start` makes what a worker needs for that. `on_progress` hears the
-    /// number of samples drawn.
+    /// `weigh` gives the weight of the sample with a number; `start` makes what a worker needs for
+    /// that. `on_progress` hears the number of samples drawn.
     pub fn new<S: Send>(
         settings: &BootstrapSettings,
-        entries: usize,
         start: impl Fn() -> S + Sync,
-        weigh: impl Fn(&mut S, u64, &mut [f64]) -> f64 + Sync,
+        weigh: impl Fn(&mut S, u64) -> f64 + Sync,
         mut on_progress: impl FnMut(u64),
     ) -> Self {
-        let tally = vec![0.0; entries];
-        let mut pool = Self { weights: Vec::new(), total: Accumulator::default(), tally };
-        let draw = |state: &mut S, number: u64| {
-            let mut tally = vec![0.0; entries];
-            let numbers = number * CHUNK..(number + 1) * CHUNK;
-            let weights = numbers.map(|n| weigh(state, n, &mut tally)).collect();
-            Chunk { weights, tally }
+        let mut pool = Self { weights: Vec::new(), total: Accumulator::default() };
+        let draw = |state: &mut S, number: u64| -> Vec<f64> {
+            (number * CHUNK..(number + 1) * CHUNK).map(|n| weigh(state, n)).collect()
         };
         let mut target = settings.min_samples.max(CHUNK);
         loop {
             let chunks = pool.weights.len() as u64 / CHUNK..target.div_ceil(CHUNK);
-            let mut drawn: Vec<Option<Chunk>> = chunks.clone().map(|_| None).collect();
+            let mut drawn: Vec<Option<Vec<f64>>> = chunks.clone().map(|_| None).collect();
             parallel::for_each(
                 settings.threads,
                 chunks.zip(drawn.iter_mut()),
                 &start,
                 |state, (number, slot)| *slot = Some(draw(state, number)),
             );
-            drawn.into_iter().flatten().for_each(|chunk| pool.add(chunk));
+            drawn.into_iter().flatten().for_each(|weights| pool.add(weights));
             let drawn = pool.sample_count();
             on_progress(drawn);
             if pool.is_good(settings) || drawn >= settings.max_samples {
@@ -66,12 +53,11 @@ impl Pool {
         }
     }
 
-    fn add(&mut self, chunk: Chunk) {
-        chunk.weights.iter().for_each(|&weight| self.total.add(weight));
-        self.weights.extend(chunk.weights);
-        for (sum, part) in self.tally.iter_mut().zip(chunk.tally) {
-            *sum += part;
+    fn add(&mut self, weights: Vec<f64>) {
+        for &weight in &weights {
+            self.total.add(weight);
         }
+        self.weights.extend(weights);
     }
 
     fn is_good(&self, settings: &BootstrapSettings) -> bool {
@@ -94,11 +80,6 @@ impl Pool {
     /// Number of samples.
     pub fn sample_count(&self) -> u64 {
         self.total.count()
-    }
-
-    /// The sums that were asked for.
-    pub fn tally(&self) -> &[f64] {
-        &self.tally
     }
 
     /// Numbers and weights of `count` samples by systematic resampling: one random offset, equal

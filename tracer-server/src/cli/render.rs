@@ -234,6 +234,7 @@ fn show(meter: &Meter, progress: Progress) {
 
 fn print(out: &mut impl Write, report: &Report, file: &Path) -> io::Result<()> {
     if !report.strategies.is_empty() {
+        writeln!(out, "Strategies; rates are shares of all tries, failures included")?;
         writeln!(out, "{}", strategy_table(report).trim_fmt())?;
     }
     let work = if report.chains > 0 { "mutations" } else { "samples" };
@@ -283,19 +284,24 @@ fn print(out: &mut impl Write, report: &Report, file: &Path) -> io::Result<()> {
     writeln!(out, "written to {}", file.display())
 }
 
+/// What each strategy did. Every rate is a share of all tries of the strategy, failures included.
 fn strategy_table(report: &Report) -> Table {
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED).set_header([
         "strategy",
-        "proposed",
+        "weight",
+        "tries",
         "generated",
+        "of tries",
         "accepted",
-        "of generated",
-        "why the others failed",
+        "of tries",
+        "mean a of tries",
+        "why tries failed, of tries",
     ]);
     let percent =
-        |part: u64, whole: u64| format!("{:.1} %", 100.0 * part as f64 / whole.max(1) as f64);
-    for strategy in &report.strategies {
+        |part: u64, whole: u64| format!("{:.2} %", 100.0 * part as f64 / whole.max(1) as f64);
+    for (index, strategy) in report.strategies.iter().enumerate() {
+        let weight = report.prospects.get(index).map(|prospect| format!("{:.3}", prospect.weight));
         let failures: Vec<String> = strategy
             .failures
             .iter()
@@ -303,10 +309,13 @@ fn strategy_table(report: &Report) -> Table {
             .collect();
         table.add_row([
             strategy.name.clone(),
+            weight.unwrap_or_default(),
             strategy.proposed.to_string(),
+            strategy.generated.to_string(),
             percent(strategy.generated, strategy.proposed),
+            strategy.accepted.to_string(),
             percent(strategy.accepted, strategy.proposed),
-            percent(strategy.accepted, strategy.generated),
+            format!("{:.4}", strategy.mean_acceptance),
             failures.join(", "),
         ]);
     }

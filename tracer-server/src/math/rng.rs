@@ -21,6 +21,8 @@ pub enum Stream {
     Verification = 7,
     /// The census of a scene's light before the chains start.
     Census = 8,
+    /// The look at a scene that sets the weights of its strategies.
+    Pilot = 11,
     /// Tests and benchmarks.
     Laboratory = 6,
     /// The coordinates of one chain in primary-sample space.

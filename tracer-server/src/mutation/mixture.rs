@@ -48,6 +48,18 @@ impl Mixture {
         Self::new(options, &MixtureBasis { camera, max_edges: 1, features, energy: &[] }).names()
     }
 
+    /// The weights, in order.
+    pub fn weights(&self) -> Vec<f64> {
+        self.entries.iter().map(|(weight, _)| *weight).collect()
+    }
+
+    /// Sets the weights, in order. No chain may have started with the mixture.
+    pub fn set_weights(&mut self, weights: &[f64]) {
+        for ((weight, _), new) in self.entries.iter_mut().zip(weights) {
+            *weight = *new;
+        }
+    }
+
     /// Number of strategies.
     pub fn len(&self) -> usize {
         self.entries.len()

@@ -63,9 +63,8 @@ impl PrimaryEnsemble {
         let seed = ensemble.seed;
         let pool = Pool::new(
             &BootstrapSettings::from(ensemble),
-            0,
             || (SceneSampler::new(scene, settings.sampler), Sample::default()),
-            |(sampler, sample), number, _| {
+            |(sampler, sample), number| {
                 sampler.sample(&mut Rng::new(seed, Stream::Bootstrap, number), sample);
                 if sample.is_physical() { sample.intensity() } else { 0.0 }
             },
