@@ -40,6 +40,12 @@ impl Path {
         path
     }
 
+    /// Replaces the vertex of a path that is nothing but a lens: see [`Path::from_lens`].
+    pub(super) fn move_lens(&mut self, lens: Vertex) {
+        debug_assert_eq!(self.vertices.len(), 1, "nothing but a lens");
+        self.vertices[0] = lens;
+    }
+
     /// Becomes the path that `splice` describes and computes its cached values.
     ///
     /// Fails when the path carries no light. Visibility is not tested; see [`Path::connect`].

@@ -117,7 +117,7 @@ impl BidirectionalSampler {
         self.light.clear();
         self.eye.clear();
         let Aim { film, lens } = aim;
-        self.lens = Path::from_lens(lens);
+        self.lens.move_lens(lens);
         self.eye.grow(scene, &lens, aim.direction(scene), limit, |j| {
             numbers.row(Strand::Eye, Strand::Eye.scattering_row(j))
         });
