@@ -47,6 +47,14 @@ impl Film {
         self.pixels.chunks_mut(self.width as usize)
     }
 
+    /// The sum of films of one size, in their order. There must be at least one.
+    pub fn sum<'a, I: IntoIterator<Item = &'a Self>>(films: I) -> Self {
+        let mut films = films.into_iter();
+        let mut sum = films.next().cloned().unwrap_or_else(|| Self::new(0, 0));
+        films.for_each(|film| sum.add(film));
+        sum
+    }
+
     /// Adds another film of the same size, pixel by pixel.
     pub fn add(&mut self, other: &Self) {
         for (sum, &pixel) in self.pixels.iter_mut().zip(&other.pixels) {

@@ -1,7 +1,23 @@
 //! Spreading work over threads without making the result depend on them.
 
+use std::ops::Range;
 use std::sync::Mutex;
 use std::thread;
+
+/// What `work` makes of the numbers in `range`, in their order, by `threads` workers that each have
+/// a state made by `start`.
+pub fn map<T: Send, S: Send>(
+    threads: usize,
+    range: Range<u64>,
+    start: impl Fn() -> S + Sync,
+    work: impl Fn(&mut S, u64) -> T + Sync,
+) -> Vec<T> {
+    let mut slots: Vec<Option<T>> = range.clone().map(|_| None).collect();
+    for_each(threads, range.zip(slots.iter_mut()), start, |state, (number, slot)| {
+        *slot = Some(work(state, number));
+    });
+    slots.into_iter().flatten().collect()
+}
 
 /// Hands `items` to `threads` workers, each with a state made by `start`, until none is left;
 /// returns the states.

@@ -50,20 +50,29 @@ fn operator(input: &mut Input<'_>, word: &str, signs: [&str; 2]) -> bool {
     accept_word(input, word) || signs.iter().any(|sign| accept(input, sign))
 }
 
-fn either(input: &mut Input<'_>) -> Parsed<Filter> {
-    let mut parts = vec![both(input)?];
-    while operator(input, "or", ["||", "|"]) {
-        parts.push(both(input)?);
+const OR: (&str, [&str; 2]) = ("or", ["||", "|"]);
+const AND: (&str, [&str; 2]) = ("and", ["&&", "&"]);
+
+/// One part, or several with an operator between them.
+fn joined<T>(
+    input: &mut Input<'_>,
+    part: impl Fn(&mut Input<'_>) -> Parsed<T>,
+    (word, signs): (&str, [&str; 2]),
+    join: impl Fn(Vec<T>) -> T,
+) -> Parsed<T> {
+    let mut parts = vec![part(input)?];
+    while operator(input, word, signs) {
+        parts.push(part(input)?);
     }
-    Ok(if parts.len() == 1 { parts.remove(0) } else { Filter::Or(parts) })
+    Ok(if parts.len() == 1 { parts.remove(0) } else { join(parts) })
+}
+
+fn either(input: &mut Input<'_>) -> Parsed<Filter> {
+    joined(input, both, OR, Filter::Or)
 }
 
 fn both(input: &mut Input<'_>) -> Parsed<Filter> {
-    let mut parts = vec![negation(input)?];
-    while operator(input, "and", ["&&", "&"]) {
-        parts.push(negation(input)?);
-    }
-    Ok(if parts.len() == 1 { parts.remove(0) } else { Filter::And(parts) })
+    joined(input, negation, AND, Filter::And)
 }
 
 fn negation(input: &mut Input<'_>) -> Parsed<Filter> {
@@ -109,19 +118,11 @@ fn located(input: &mut Input<'_>, place: Place) -> Parsed<Leaf> {
 }
 
 fn vertex_either(input: &mut Input<'_>) -> Parsed<VertexTest> {
-    let mut parts = vec![vertex_both(input)?];
-    while operator(input, "or", ["||", "|"]) {
-        parts.push(vertex_both(input)?);
-    }
-    Ok(if parts.len() == 1 { parts.remove(0) } else { VertexTest::Or(parts) })
+    joined(input, vertex_both, OR, VertexTest::Or)
 }
 
 fn vertex_both(input: &mut Input<'_>) -> Parsed<VertexTest> {
-    let mut parts = vec![vertex_negation(input)?];
-    while operator(input, "and", ["&&", "&"]) {
-        parts.push(vertex_negation(input)?);
-    }
-    Ok(if parts.len() == 1 { parts.remove(0) } else { VertexTest::And(parts) })
+    joined(input, vertex_negation, AND, VertexTest::And)
 }
 
 fn vertex_negation(input: &mut Input<'_>) -> Parsed<VertexTest> {

@@ -9,6 +9,8 @@ use std::f64::consts::{FRAC_1_PI, TAU};
 
 use glam::DVec3;
 
+use crate::math::turn;
+
 /// The distribution of one roughness, the same in all azimuths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ggx {
@@ -77,8 +79,7 @@ impl Ggx {
         let along = stretched.dot(half);
         let cap = 2.0 * along * half - stretched;
         let u = 1.0 - (cap.z + stretched.z) / (1.0 + stretched.z);
-        let turn = cap.y.atan2(cap.x) / TAU;
-        (u, if turn < 0.0 { turn + 1.0 } else { turn })
+        (u, turn(cap.y, cap.x))
     }
 
     /// `w` in the configuration in which the distribution is a hemisphere.

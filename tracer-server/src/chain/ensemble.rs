@@ -140,9 +140,7 @@ impl Ensemble {
 
     /// Sum of all lanes: `sum_p lum = steps`.
     pub fn splats(&self) -> Film {
-        let mut sum = self.lanes[0].film.clone();
-        self.lanes[1..].iter().for_each(|lane| sum.add(&lane.film));
-        sum
+        Film::sum(self.lanes.iter().map(|lane| &lane.film))
     }
 
     /// The image in radiance of the file's units; black without steps.

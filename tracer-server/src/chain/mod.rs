@@ -71,7 +71,7 @@ pub struct Chain {
 /// The probability of accepting a proposal of ratio `ratio`, or `None` when it is no number. The
 /// comparison is written so that NaN fails it: `f64::min` would turn it into certainty.
 #[inline]
-fn acceptance(ratio: f64) -> Option<f64> {
+pub(crate) fn acceptance(ratio: f64) -> Option<f64> {
     if ratio >= 0.0 { Some(ratio.min(1.0)) } else { None }
 }
 

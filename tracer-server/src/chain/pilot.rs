@@ -93,15 +93,10 @@ pub fn explore(
     options: &StrategyOptions,
     settings: &PilotSettings,
 ) -> (Mixture, Vec<Prospect>) {
-    let basis = MixtureBasis {
-        camera: scene.camera(),
-        max_edges: scene.max_edges(),
-        features: scene.features(),
-        energy: &[],
-    };
+    let basis = MixtureBasis::of(scene, &[]);
     let blind = Mixture::new(options, &basis);
     let found = look(scene, &blind, settings);
-    let mut mixture = Mixture::new(options, &MixtureBasis { energy: &found.lengths, ..basis });
+    let mut mixture = Mixture::new(options, &MixtureBasis::of(scene, &found.lengths));
     let mut prospects: Vec<Prospect> = blind
         .names()
         .into_iter()
@@ -157,15 +152,16 @@ impl Tries {
 
 fn look(scene: &Scene, mixture: &Mixture, settings: &PilotSettings) -> Found {
     let chunks = settings.samples.div_ceil(CHUNK);
-    let mut parts: Vec<Option<Found>> = (0..chunks).map(|_| None).collect();
-    parallel::for_each(
+    let parts = parallel::map(
         settings.threads,
-        (0..).zip(parts.iter_mut()),
+        0..chunks,
         || Scout::new(scene, settings.seed),
-        |scout, (number, slot)| *slot = Some(scout.chunk(mixture, number)),
+        |scout, number| scout.chunk(mixture, number),
     );
     let mut found = Found::new(scene, mixture);
-    parts.iter().flatten().for_each(|part| found.merge(part));
+    for part in &parts {
+        found.merge(part);
+    }
     found
 }
 
@@ -299,12 +295,7 @@ mod tests {
     fn who_switches_it_off_keeps_the_weights() {
         let scene = diffuse_room().build();
         let (mixture, prospects) = explore(&scene, &off(), &settings(2));
-        let basis = MixtureBasis {
-            camera: scene.camera(),
-            max_edges: scene.max_edges(),
-            features: scene.features(),
-            energy: &[],
-        };
+        let basis = MixtureBasis::of(&scene, &[]);
         assert_eq!(mixture.weights(), Mixture::new(&off(), &basis).weights());
         assert!(prospects.iter().all(|p| p.name != "multi-chain"), "nothing is specular");
     }

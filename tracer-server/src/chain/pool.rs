@@ -36,14 +36,10 @@ impl Pool {
         let mut target = settings.min_samples.max(CHUNK);
         loop {
             let chunks = pool.weights.len() as u64 / CHUNK..target.div_ceil(CHUNK);
-            let mut drawn: Vec<Option<Vec<f64>>> = chunks.clone().map(|_| None).collect();
-            parallel::for_each(
-                settings.threads,
-                chunks.zip(drawn.iter_mut()),
-                &start,
-                |state, (number, slot)| *slot = Some(draw(state, number)),
-            );
-            drawn.into_iter().flatten().for_each(|weights| pool.add(weights));
+            let drawn = parallel::map(settings.threads, chunks, &start, draw);
+            for weights in drawn {
+                pool.add(weights);
+            }
             let drawn = pool.sample_count();
             on_progress(drawn);
             if pool.is_good(settings) || drawn >= settings.max_samples {

@@ -89,28 +89,6 @@ impl Inventory {
         let usage = usage(description);
         let (low, high) = bounds(description);
         let features = scene.features();
-        let mut present = Vec::new();
-        if features.specular {
-            present.push("mirrors or glass: chains keep specular chains of events");
-        }
-        if features.spheres {
-            present.push("analytic spheres: a second hierarchy is searched for exact spheres");
-        }
-        if features.shading_normals {
-            present.push("shading normals: walks from the light carry adjoint factors");
-        }
-        if features.textures {
-            present.push("textures: colour or roughness varies over surfaces");
-        }
-        if features.one_sided {
-            present.push("one-sided surfaces: black on their back");
-        }
-        if features.environment {
-            present.push("environment: a ray that leaves the scene meets light");
-        }
-        if features.aperture {
-            present.push("aperture: chains move the lens point too");
-        }
         let told = loaded.warnings.iter().map(ToString::to_string);
         Self {
             name: description.name.clone(),
@@ -123,7 +101,7 @@ impl Inventory {
             max_edges: description.max_edges,
             materials: material_rows(description, scene, &usage),
             lights: light_rows(description, &usage).into_iter().chain(lamp_rows(scene)).collect(),
-            features: present,
+            features: features.present(),
             switched_off: features.switched_off(),
             warnings: told.chain(scene.warnings().iter().cloned()).collect(),
             load_seconds: 0.0,

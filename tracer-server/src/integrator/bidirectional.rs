@@ -62,8 +62,7 @@ impl BidirectionalTracer {
 
     /// The image in radiance of the file's units.
     pub fn image(&self, scene: &Scene) -> Film {
-        let mut image = self.lanes[0].clone();
-        self.lanes[1..].iter().for_each(|lane| image.add(lane));
+        let mut image = Film::sum(&self.lanes);
         image.scale(scene.radiance_scale() / self.samples.max(1) as f64);
         image
     }

@@ -1,12 +1,11 @@
 //! The pictures of two scenes that other renderers computed too, at great length.
 
-use std::path::{Path, PathBuf};
-
 use tests::{Accumulator, Suite, block_means, welch_z};
 
 use super::BidirectionalTracer;
 use crate::image_file::read_exr;
 use crate::scene::Scene;
+use crate::scene::fixtures::shared_scenes;
 use crate::scene::load::load;
 
 /// Side of the film in pixels: every pixel is the mean of a square of the reference, which has
@@ -20,19 +19,6 @@ const SAMPLES: u64 = 48;
 type Image = Vec<[f64; 3]>;
 /// Where a pixel of a turned picture comes from: column and row.
 type Turn = fn(usize, usize) -> (usize, usize);
-
-/// The folder of scenes made by others, or `None` with a printed line.
-#[expect(clippy::print_stderr, reason = "a test that is skipped must say so")]
-fn shared_scenes() -> Option<PathBuf> {
-    let shared = std::env::var_os("LVIS_SHARED")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"), PathBuf::from);
-    let scenes = shared.join("scenes");
-    if scenes.is_dir() {
-        return Some(scenes);
-    }
-    eprintln!("skipped: no scenes in {}; set LVIS_SHARED to their folder", scenes.display());
-    None
-}
 
 /// The reference in blocks, and independent pictures of the same size.
 fn pictures(name: &str) -> Option<(Image, Vec<Image>)> {

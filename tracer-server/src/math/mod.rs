@@ -12,5 +12,5 @@ pub use sum::Accumulator;
 pub use torus::TorusStep;
 pub use warp::{
     below_one, cosine_hemisphere, invert_cosine_hemisphere, invert_uniform_sphere,
-    invert_uniform_triangle, log_uniform, uniform_sphere, uniform_triangle,
+    invert_uniform_triangle, log_uniform, pick, turn, uniform_sphere, uniform_triangle,
 };

@@ -14,7 +14,7 @@ pub fn cosine_hemisphere(u: f64, v: f64) -> DVec3 {
 
 /// The numbers from which [`cosine_hemisphere`] makes the unit vector `w`, whose z is not negative.
 pub fn invert_cosine_hemisphere(w: DVec3) -> [f64; 2] {
-    [below_one(w.x * w.x + w.y * w.y), turn_of(w)]
+    [below_one(w.x * w.x + w.y * w.y), turn(w.y, w.x)]
 }
 
 /// A direction on the whole sphere with density `1 / (4 pi)`.
@@ -27,7 +27,7 @@ pub fn uniform_sphere(u: f64, v: f64) -> DVec3 {
 
 /// The numbers from which [`uniform_sphere`] makes the unit vector `w`.
 pub fn invert_uniform_sphere(w: DVec3) -> [f64; 2] {
-    [below_one(0.5 * (1.0 - w.z)), turn_of(w)]
+    [below_one(0.5 * (1.0 - w.z)), turn(w.y, w.x)]
 }
 
 /// Barycentric weights of the second and third corner of a triangle, uniform over its area.
@@ -50,10 +50,25 @@ pub fn log_uniform(min: f64, max: f64, u: f64) -> f64 {
     max * (-(max / min).ln() * u).exp()
 }
 
-/// The azimuth of `w` around z as a share of a full turn, in [0, 1).
+/// The item that owns `u`, when each owns as many numbers from zero on as its weight says; the last
+/// one where rounding leaves `u` to none.
 #[inline]
-fn turn_of(w: DVec3) -> f64 {
-    let turn = w.y.atan2(w.x) / TAU;
+pub fn pick<T>(mut u: f64, items: impl IntoIterator<Item = (T, f64)>) -> Option<T> {
+    let mut chosen = None;
+    for (item, weight) in items {
+        chosen = Some(item);
+        u -= weight;
+        if u < 0.0 {
+            break;
+        }
+    }
+    chosen
+}
+
+/// The angle from the x axis to the point (`x`, `y`) as a share of a full turn, in [0, 1).
+#[inline]
+pub fn turn(y: f64, x: f64) -> f64 {
+    let turn = y.atan2(x) / TAU;
     below_one(if turn < 0.0 { turn + 1.0 } else { turn })
 }
 

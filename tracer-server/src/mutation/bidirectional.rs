@@ -2,7 +2,7 @@
 //! [Veach and Guibas 1997, section 5.1].
 
 use super::{MixtureBasis, Mutation, Tuning};
-use crate::math::Rng;
+use crate::math::{Rng, pick};
 use crate::path::{Draft, Failure, Path, Range, resample};
 use crate::scene::Tracer;
 
@@ -150,20 +150,11 @@ impl Bidirectional {
 
     fn choose_range(self, x: &Path, rng: &mut Rng) -> Option<(usize, usize)> {
         let (mask, lens) = (self.end_mask(x), x.edge_count());
-        let mut u = rng.uniform() * self.deletion_total(x);
-        let mut chosen = None;
-        for edges in 1..=self.most_deleted(x) {
-            let pairs = ranges(mask, edges, lens);
-            if pairs == 0 {
-                continue;
-            }
-            chosen = Some((edges, pairs));
-            u -= deletion_weight(edges) * f64::from(pairs.count_ones());
-            if u < 0.0 {
-                break;
-            }
-        }
-        let (edges, pairs) = chosen?;
+        let all = (1..=self.most_deleted(x)).map(|edges| (edges, ranges(mask, edges, lens)));
+        let weighted = all.filter(|(_, pairs)| *pairs != 0).map(|(edges, pairs)| {
+            ((edges, pairs), deletion_weight(edges) * f64::from(pairs.count_ones()))
+        });
+        let (edges, pairs) = pick(rng.uniform() * self.deletion_total(x), weighted)?;
         let kept_light = nth_set_bit(pairs, rng.below(pairs.count_ones() as usize));
         Some((kept_light, kept_light + edges - 1))
     }
@@ -172,16 +163,8 @@ impl Bidirectional {
         let (kept_light, from) = ends;
         let deleted = from + 1 - kept_light;
         let admissible = self.admissible(x.edge_count(), kept_light, deleted);
-        let mut u = rng.uniform() * self.addition_total(x.edge_count(), kept_light, deleted);
-        let mut chosen = None;
-        for added in admissible {
-            chosen = Some(added);
-            u -= addition_weight(added.abs_diff(deleted));
-            if u < 0.0 {
-                break;
-            }
-        }
-        chosen
+        let u = rng.uniform() * self.addition_total(x.edge_count(), kept_light, deleted);
+        pick(u, admissible.map(|added| (added, addition_weight(added.abs_diff(deleted)))))
     }
 }
 

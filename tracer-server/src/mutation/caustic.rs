@@ -7,7 +7,7 @@ use common::Camera;
 use std::f64::consts::FRAC_1_PI;
 
 use super::retrace::{Sizes, repeat, turn};
-use super::{Form, MixtureBasis, Mutation, Parameter, Tuning};
+use super::{MixtureBasis, Mutation, Parameter, Tuning};
 use crate::math::Rng;
 use crate::path::{Draft, Failure, Path, Splice, extend, open_for_connection};
 use crate::scene::Tracer;
@@ -72,13 +72,8 @@ impl Mutation for CausticPerturbation {
     type Move = Turn;
     const NAME: &'static str = "caustic";
     const WEIGHT: f64 = 0.1;
-    const PARAMETERS: &'static [Parameter] = &[Parameter {
-        name: "radius",
-        about: "wanted displacement of the image, in pixels",
-        form: Form::Sizes,
-        lowest: 1e-6,
-        highest: 1e6,
-    }];
+    const PARAMETERS: &'static [Parameter] =
+        &[Parameter::on_film("radius", "wanted displacement of the image, in pixels")];
 
     fn build(basis: &MixtureBasis<'_>, tuning: &Tuning) -> Self {
         let usual = Self::new(basis.camera);
@@ -88,7 +83,7 @@ impl Mutation for CausticPerturbation {
     fn applicable(&self, x: &Path) -> bool {
         let k = x.edge_count();
         // The direction of an infinite light is its start: there is nothing to turn.
-        k >= 2 && x.is_connectable(k - 1) && !(chain_start(x) == 0 && x.is_lit_from_afar())
+        k >= 2 && x.is_connectable(k - 1) && !(x.is_lit_from_afar() && chain_start(x) == 0)
     }
 
     fn propose(

@@ -2,7 +2,7 @@
 //! split. It makes the chain able to go anywhere in one step.
 
 use super::{MixtureBasis, Mutation, Tuning};
-use crate::math::Rng;
+use crate::math::{Rng, pick};
 use crate::path::{Draft, Failure, Path, Range, resample};
 use crate::scene::Tracer;
 
@@ -33,14 +33,8 @@ impl Independent {
     }
 
     fn choose_length(&self, rng: &mut Rng) -> usize {
-        let mut u = rng.uniform();
-        let last = self.lengths.len() - 1;
-        (1..last)
-            .find(|&k| {
-                u -= self.lengths[k];
-                u < 0.0
-            })
-            .unwrap_or(last)
+        let lengths = self.lengths.iter().copied().enumerate().skip(1);
+        pick(rng.uniform(), lengths).unwrap_or(1)
     }
 
     fn probability(&self, edges: usize) -> f64 {
@@ -73,10 +67,7 @@ impl Mutation for Independent {
         let edges = self.choose_length(rng);
         // `k + 1` splits: 0 to k vertices on the light side.
         let from_light = rng.below(edges + 1);
-        let lens = usize::from(self.aperture);
-        let from_eye = edges - from_light + lens;
-        let kept_from = x.edge_count() + lens;
-        let range = Range { kept_light: 0, kept_from, from_light, from_eye };
+        let range = Range::whole(x.edge_count(), from_light, edges - from_light, self.aperture);
         resample(scene, x, range, rng, draft, y)
     }
 

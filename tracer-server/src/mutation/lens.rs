@@ -4,7 +4,7 @@
 use common::Camera;
 
 use super::retrace::{Sizes, displace, from_lens, walk_pdf};
-use super::{Form, MixtureBasis, Mutation, Parameter, Tuning};
+use super::{MixtureBasis, Mutation, Parameter, Tuning};
 use crate::math::Rng;
 use crate::path::{Draft, Failure, Path};
 use crate::scene::Tracer;
@@ -28,13 +28,8 @@ impl Mutation for LensPerturbation {
     type Move = usize;
     const NAME: &'static str = "lens";
     const WEIGHT: f64 = 0.2;
-    const PARAMETERS: &'static [Parameter] = &[Parameter {
-        name: "radius",
-        about: "displacement of the film point, in pixels",
-        form: Form::Sizes,
-        lowest: 1e-6,
-        highest: 1e6,
-    }];
+    const PARAMETERS: &'static [Parameter] =
+        &[Parameter::on_film("radius", "displacement of the film point, in pixels")];
 
     fn build(basis: &MixtureBasis<'_>, tuning: &Tuning) -> Self {
         let usual = Self::new(basis.camera);

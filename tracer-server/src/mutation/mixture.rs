@@ -3,9 +3,9 @@
 use common::Camera;
 
 use super::{KINDS, Kind, Strategy, StrategyOptions};
-use crate::math::Rng;
+use crate::math::{Rng, pick};
 use crate::path::Path;
-use crate::scene::SceneFeatures;
+use crate::scene::{Scene, SceneFeatures};
 
 /// What strategies are built from.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +18,14 @@ pub struct MixtureBasis<'a> {
     pub features: SceneFeatures,
     /// Entry `k`: the light that paths of `k` edges carry, as the bootstrap has measured it.
     pub energy: &'a [f64],
+}
+
+impl<'a> MixtureBasis<'a> {
+    /// Of a scene, in which the bootstrap or a pilot has found `energy`.
+    pub fn of(scene: &'a Scene, energy: &'a [f64]) -> Self {
+        let (camera, max_edges, features) = (scene.camera(), scene.max_edges(), scene.features());
+        Self { camera, max_edges, features, energy }
+    }
 }
 
 /// The strategies of a chain with their weights. Fixed before the chain starts.
@@ -90,17 +98,8 @@ impl Mixture {
     /// One of the strategies that apply to `x`, in proportion to the weights; `total` is `Z(x)`.
     #[inline]
     pub fn choose(&self, x: &Path, total: f64, rng: &mut Rng) -> Option<usize> {
-        let mut u = rng.uniform() * total;
-        let mut chosen = None;
-        for (index, (weight, strategy)) in self.entries.iter().enumerate() {
-            if strategy.applicable(x) {
-                chosen = Some(index);
-                u -= weight;
-                if u < 0.0 {
-                    break;
-                }
-            }
-        }
-        chosen
+        let entries = self.entries.iter().enumerate();
+        let applicable = entries.filter(|(_, (_, strategy))| strategy.applicable(x));
+        pick(rng.uniform() * total, applicable.map(|(index, (weight, _))| (index, *weight)))
     }
 }

@@ -35,7 +35,7 @@ pub use mixture::{Mixture, MixtureBasis};
 pub use multi_chain::MultiChain;
 pub use primary::Primary;
 pub use retrace::Sizes;
-pub use tuning::{Form, OptionError, Parameter, StrategyOptions, Tuning};
+pub use tuning::{Form, OptionError, Parameter, StrategyOptions, Tuning, key_of};
 
 /// One way to mutate a path.
 ///

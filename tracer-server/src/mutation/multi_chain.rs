@@ -40,13 +40,7 @@ impl Mutation for MultiChain {
     const NAME: &'static str = "multi-chain";
     const WEIGHT: f64 = 0.07;
     const PARAMETERS: &'static [Parameter] = &[
-        Parameter {
-            name: "radius",
-            about: "displacement of the film point, in pixels",
-            form: Form::Sizes,
-            lowest: 1e-6,
-            highest: 1e6,
-        },
+        Parameter::on_film("radius", "displacement of the film point, in pixels"),
         Parameter {
             name: "angle",
             about: "turn of every further chain, in radians",
@@ -72,7 +66,7 @@ impl Mutation for MultiChain {
     fn applicable(&self, x: &Path) -> bool {
         let d = x.first_diffuse_from_eye();
         // A chain that ends on a light must be able to hit it.
-        d >= 1 && !x.is_connectable(d - 1) && (last_chain_end(x) > 0 || x.reciprocal(0) > 0.0)
+        d >= 1 && !x.is_connectable(d - 1) && (x.reciprocal(0) > 0.0 || last_chain_end(x) > 0)
     }
 
     fn propose(

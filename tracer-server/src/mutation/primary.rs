@@ -5,7 +5,7 @@
 //! with the probability that it would have been this one.
 
 use super::{Form, MixtureBasis, Mutation, Parameter, Tuning};
-use crate::math::{Rng, TorusStep};
+use crate::math::{Rng, TorusStep, pick};
 use crate::path::{Draft, Failure, Numbers, Path, Range, Strand, Tape, resample};
 use crate::scene::Tracer;
 
@@ -51,16 +51,9 @@ impl Primary {
     /// A number of light vertices, with the probability that bidirectional sampling would have
     /// made `x` by this split: `(1 / lum C_i) / S`.
     pub(super) fn choose_split(x: &Path, rng: &mut Rng) -> usize {
-        let mut u = rng.uniform() * x.density_sum();
-        let mut chosen = 0;
-        for light in (0..=x.edge_count()).filter(|&light| x.reciprocal(light) > 0.0) {
-            chosen = light;
-            u -= x.reciprocal(light);
-            if u < 0.0 {
-                break;
-            }
-        }
-        chosen
+        let splits = (0..=x.edge_count()).map(|light| (light, x.reciprocal(light)));
+        let possible = splits.filter(|(_, reciprocal)| *reciprocal > 0.0);
+        pick(rng.uniform() * x.density_sum(), possible).unwrap_or(0)
     }
 
     /// Makes `y` of the numbers on `tape`, changed, by the walks of a split of `x`.
@@ -73,9 +66,7 @@ impl Primary {
         y: &mut Path,
     ) -> Result<(), Failure> {
         let k = x.edge_count();
-        let lens = usize::from(self.aperture);
-        let (kept_from, from_eye) = (k + lens, k - light + lens);
-        let range = Range { kept_light: 0, kept_from, from_light: light, from_eye };
+        let range = Range::whole(k, light, k - light, self.aperture);
         let step = (rng.uniform() >= self.fresh).then_some(self.step);
         resample(scene, x, range, &mut Moved { tape, step, rng }, draft, y)
     }

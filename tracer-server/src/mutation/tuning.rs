@@ -108,6 +108,11 @@ pub enum OptionError {
     NothingLeft,
 }
 
+/// A strategy's name without spaces: how options and scene files spell it.
+pub fn key_of(name: &str) -> String {
+    name.replace(' ', "-")
+}
+
 fn strategy_list() -> String {
     KINDS.iter().map(Kind::key).collect::<Vec<_>>().join(", ")
 }
@@ -115,7 +120,7 @@ fn strategy_list() -> String {
 impl Kind {
     /// The name in options and scene files: without spaces.
     pub fn key(&self) -> String {
-        self.name.replace(' ', "-")
+        key_of(self.name)
     }
 
     fn find(key: &str) -> Result<usize, OptionError> {
@@ -137,6 +142,11 @@ impl Kind {
 }
 
 impl Parameter {
+    /// Smallest and largest size of something on the film, in pixels.
+    pub const fn on_film(name: &'static str, about: &'static str) -> Self {
+        Self { name, about, form: Form::Sizes, lowest: 1e-6, highest: 1e6 }
+    }
+
     /// The bounds in words.
     pub fn wanted(&self) -> String {
         let Self { lowest, highest, .. } = self;

@@ -20,6 +20,15 @@ pub struct Range {
     pub from_eye: usize,
 }
 
+impl Range {
+    /// Everything of a path of `edges` edges is replaced, by one with `light` vertices made from the
+    /// light and `eye` made from the eye; a lens that has an area gets a new point too.
+    pub fn whole(edges: usize, light: usize, eye: usize, aperture: bool) -> Self {
+        let lens = usize::from(aperture);
+        Self { kept_light: 0, kept_from: edges + lens, from_light: light, from_eye: eye + lens }
+    }
+}
+
 /// Room for the vertices of a proposal, so that a step allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Draft {

@@ -37,6 +37,28 @@ pub struct SceneDescription {
 }
 
 impl SceneDescription {
+    /// A scene without anything to see.
+    pub fn empty(
+        name: impl Into<String>,
+        camera: CameraPose,
+        [width, height]: [u32; 2],
+        max_edges: usize,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            camera,
+            width,
+            height,
+            max_edges,
+            materials: Vec::new(),
+            textures: Vec::new(),
+            meshes: Vec::new(),
+            spheres: Vec::new(),
+            lights: Vec::new(),
+            lens: None,
+        }
+    }
+
     /// The colour of an input on the average over its texture; black where there is no such
     /// texture.
     pub fn mean_color(&self, input: ColorInput) -> Rgb {

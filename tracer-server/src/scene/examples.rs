@@ -1,6 +1,6 @@
 //! The built-in scenes and real scenes made by others must load as their authors meant them.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use common::Rgb;
@@ -8,6 +8,7 @@ use common::Rgb;
 use super::BsdfDescription;
 use super::Scene;
 use super::builtin::{BUILTINS, Builtin};
+use super::fixtures::shared_scenes;
 use super::load::{Loaded, load};
 
 fn triangles(loaded: &Loaded) -> usize {
@@ -66,19 +67,6 @@ fn the_example_of_the_scenes_readme_loads() {
     let scene = Scene::new(&loaded.description).expect("a sound scene");
     let sky = scene.lamps().find(|lamp| lamp.kind == "environment").expect("a sky");
     assert!((sky.color.b - 3.0).abs() < 0.02, "{sky:?}");
-}
-
-/// The folder of scenes made by others, or `None` with a printed line.
-#[expect(clippy::print_stderr, reason = "a test that is skipped must say so")]
-fn shared_scenes() -> Option<PathBuf> {
-    let shared = std::env::var_os("LVIS_SHARED")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"), PathBuf::from);
-    let scenes = shared.join("scenes");
-    if scenes.is_dir() {
-        return Some(scenes);
-    }
-    eprintln!("skipped: no scenes in {}; set LVIS_SHARED to their folder", scenes.display());
-    None
 }
 
 fn load_shared(scenes: &Path, name: &str) -> Loaded {

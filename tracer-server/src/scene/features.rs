@@ -58,6 +58,33 @@ impl SceneFeatures {
         !(self.shading_normals || self.textures || self.one_sided)
     }
 
+    /// What the features that are there ask for, in words, for people.
+    pub fn present(self) -> Vec<&'static str> {
+        let mut present = Vec::new();
+        if self.specular {
+            present.push("mirrors or glass: chains keep specular chains of events");
+        }
+        if self.spheres {
+            present.push("analytic spheres: a second hierarchy is searched for exact spheres");
+        }
+        if self.shading_normals {
+            present.push("shading normals: walks from the light carry adjoint factors");
+        }
+        if self.textures {
+            present.push("textures: colour or roughness varies over surfaces");
+        }
+        if self.one_sided {
+            present.push("one-sided surfaces: black on their back");
+        }
+        if self.environment {
+            present.push("environment: a ray that leaves the scene meets light");
+        }
+        if self.aperture {
+            present.push("aperture: chains move the lens point too");
+        }
+        present
+    }
+
     /// What the absent features switch off, in words, for the log and for people.
     pub fn switched_off(self) -> Vec<&'static str> {
         let mut off = Vec::new();

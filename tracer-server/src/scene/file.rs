@@ -177,18 +177,10 @@ pub(super) fn read(text: &str, file: &Path, name: &str) -> Result<Read, LoadErro
         up: scene.camera.up,
         vertical_fov: scene.camera.vertical_fov,
     };
+    let Film { width, height } = scene.film;
     let description = SceneDescription {
-        name: name.to_owned(),
-        camera,
-        width: scene.film.width,
-        height: scene.film.height,
-        max_edges: scene.max_edges,
-        materials: Vec::new(),
-        textures: Vec::new(),
-        meshes: Vec::new(),
-        spheres: Vec::new(),
-        lights: Vec::new(),
         lens: scene.camera.lens(),
+        ..SceneDescription::empty(name, camera, [width, height], scene.max_edges)
     };
     let origins = Origins::of_text(file, text);
     let strategies = strategies::settings(&scene.strategies, text, file);

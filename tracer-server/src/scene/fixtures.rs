@@ -2,6 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use std::path::{Path, PathBuf};
+
 use common::{CameraPose, Rgb};
 use glam::{DMat3, DVec3, Vec3, Vec3Swizzles as _};
 
@@ -34,21 +36,8 @@ impl Fixture {
     /// An empty scene with a camera at `origin` that looks at `target`.
     pub(crate) fn new(origin: DVec3, target: DVec3, fov: f64) -> Self {
         let up = if (target - origin).normalize().y.abs() > 0.99 { DVec3::Z } else { DVec3::Y };
-        Self {
-            description: SceneDescription {
-                name: "fixture".to_owned(),
-                camera: CameraPose { origin, target, up, vertical_fov: fov },
-                width: 32,
-                height: 32,
-                max_edges: 6,
-                materials: Vec::new(),
-                textures: Vec::new(),
-                meshes: Vec::new(),
-                spheres: Vec::new(),
-                lights: Vec::new(),
-                lens: None,
-            },
-        }
+        let camera = CameraPose { origin, target, up, vertical_fov: fov };
+        Self { description: SceneDescription::empty("fixture", camera, [32, 32], 6) }
     }
 
     fn material(&mut self, bsdf: BsdfDescription, emission: Rgb) -> u16 {
@@ -366,4 +355,17 @@ pub(crate) fn every_light() -> Vec<(&'static str, Fixture)> {
         ("image sky", open_room_with_glass().light(image_sky())),
         ("lens", specular_room().lens(0.05, 1.6).max_edges(5)),
     ]
+}
+
+/// The folder of scenes made by others, or `None` with a printed line.
+#[expect(clippy::print_stderr, reason = "a test that is skipped must say so")]
+pub(crate) fn shared_scenes() -> Option<PathBuf> {
+    let shared = std::env::var_os("LVIS_SHARED")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"), PathBuf::from);
+    let scenes = shared.join("scenes");
+    if scenes.is_dir() {
+        return Some(scenes);
+    }
+    eprintln!("skipped: no scenes in {}; set LVIS_SHARED to their folder", scenes.display());
+    None
 }

@@ -118,17 +118,15 @@ fn read_obj(path: &Path) -> Result<Read, LoadError> {
         viewpoint::guess(&scene.meshes)
     };
     let description = SceneDescription {
-        name: stem(path),
-        camera: view.camera,
-        width: view.width,
-        height: view.height,
-        max_edges: DEFAULT_MAX_EDGES,
         materials: scene.materials,
         textures: scene.textures,
         meshes: scene.meshes,
-        spheres: Vec::new(),
-        lights: Vec::new(),
-        lens: None,
+        ..SceneDescription::empty(
+            stem(path),
+            view.camera,
+            [view.width, view.height],
+            DEFAULT_MAX_EDGES,
+        )
     };
     Ok(Read { description, origins, warnings: scene.warnings, strategies: Vec::new() })
 }

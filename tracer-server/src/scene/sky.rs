@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use common::Rgb;
 use glam::{DMat3, DVec3};
 
-use crate::math::{below_one, invert_uniform_sphere, uniform_sphere};
+use crate::math::{below_one, invert_uniform_sphere, turn, uniform_sphere};
 
 /// An image of the sky: `width` columns of longitude and `height` rows of latitude.
 ///
@@ -152,8 +152,7 @@ fn band(row: usize, height: usize) -> f64 {
 
 /// The turn around y as a share of a full one, in [0, 1).
 fn longitude(direction: DVec3) -> f64 {
-    let turn = direction.x.atan2(-direction.z) / TAU;
-    below_one(if turn < 0.0 { turn + 1.0 } else { turn })
+    turn(direction.x, -direction.z)
 }
 
 impl Sky {

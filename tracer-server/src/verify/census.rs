@@ -36,15 +36,16 @@ pub struct Census {
 impl Census {
     /// Draws `samples` bidirectional samples.
     pub fn new(scene: &Scene, seed: u64, samples: u64, threads: usize) -> Self {
-        let mut parts: Vec<Option<Self>> = (0..samples.div_ceil(CHUNK)).map(|_| None).collect();
-        parallel::for_each(
+        let parts = parallel::map(
             threads,
-            (0..).zip(parts.iter_mut()),
+            0..samples.div_ceil(CHUNK),
             || Tracer::new(scene),
-            |scene, (number, slot)| *slot = Some(Self::chunk(scene, seed, number)),
+            |scene, number| Self::chunk(scene, seed, number),
         );
         let mut census = Self::default();
-        parts.into_iter().flatten().for_each(|part| census.merge(part));
+        for part in parts {
+            census.merge(part);
+        }
         census
     }
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::invariance::MIN_MOVES;
 use crate::path::ClassKey;
 
 /// Two different classes, the smaller key first.
@@ -23,6 +24,11 @@ pub struct Flow {
 }
 
 impl Flow {
+    /// True when enough proposals went each way to judge by.
+    pub fn is_judged(&self) -> bool {
+        self.forth >= MIN_MOVES && self.back >= MIN_MOVES
+    }
+
     /// How many standard errors the net flow of `samples` samples is away from balance.
     pub fn z(&self, samples: u64) -> f64 {
         let n = samples as f64;

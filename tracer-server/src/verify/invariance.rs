@@ -8,6 +8,7 @@ use tests::Accumulator;
 
 use super::flow::Flows;
 use super::functionals;
+use crate::chain::acceptance;
 use crate::math::{Rng, Stream};
 use crate::mutation::{Proposal, Strategy};
 use crate::parallel;
@@ -165,18 +166,20 @@ pub fn gather(
     on_chunk: &(dyn Fn(u64) + Sync),
 ) -> Gathered {
     let chunks = run.samples.div_ceil(CHUNK);
-    let mut parts: Vec<Option<Gathered>> = (0..chunks).map(|_| None).collect();
-    parallel::for_each(
+    let parts = parallel::map(
         run.threads,
-        (0..).zip(parts.iter_mut()),
+        0..chunks,
         || Bench::new(scene),
-        |bench, (number, slot)| {
-            *slot = Some(bench.chunk(propose, run, number));
+        |bench, number| {
+            let part = bench.chunk(propose, run, number);
             on_chunk(CHUNK);
+            part
         },
     );
     let mut total = Gathered::default();
-    parts.iter().flatten().for_each(|part| total.merge(part));
+    for part in &parts {
+        total.merge(part);
+    }
     total
 }
 
@@ -283,11 +286,10 @@ impl Hand {
             gathered.tries += 1;
             let drawn = propose(scene, x, rng, draft, y);
             let ratio = drawn.map_or(0.0, |proposal| proposal.ratio);
-            if !(ratio >= 0.0) {
-                gathered.not_finite += 1;
-            }
+            let a = acceptance(ratio);
+            gathered.not_finite += u64::from(a.is_none());
             // A chain refuses what is no number.
-            let a = if ratio >= 0.0 { ratio.min(1.0) } else { 0.0 };
+            let a = a.unwrap_or(0.0);
             gathered.possible += u64::from(a > 0.0);
             let moves = match test {
                 Test::Steps(_) => a > rng.uniform(),

@@ -5,7 +5,7 @@ use tests::z_limit;
 
 use super::flow::Pair;
 use super::functionals;
-use super::invariance::{Gathered, MIN_MOVES, Propose, Run, gather};
+use super::invariance::{Gathered, Propose, Run, gather};
 use crate::scene::Scene;
 
 /// A deviation above this calls for a second, larger run.
@@ -100,8 +100,7 @@ fn scores(gathered: &Gathered, law: Law) -> Vec<(Quantity, f64)> {
             scores.map(|(index, z)| (Quantity::Function(index), z)).collect()
         }
         Law::Flow => {
-            let judged = gathered.flows.pairs.iter();
-            let judged = judged.filter(|(_, f)| f.forth >= MIN_MOVES && f.back >= MIN_MOVES);
+            let judged = gathered.flows.pairs.iter().filter(|(_, flow)| flow.is_judged());
             judged.map(|(pair, flow)| (Quantity::Flow(*pair), flow.z(gathered.samples))).collect()
         }
     }

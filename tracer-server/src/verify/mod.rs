@@ -15,12 +15,12 @@ use serde::Serialize;
 
 use crate::chain::EnsembleSettings;
 use crate::mutation::{
-    Independent, KINDS, Mixture, MixtureBasis, Mutation as _, Strategy, StrategyOptions,
+    Independent, KINDS, Mixture, MixtureBasis, Mutation as _, Strategy, StrategyOptions, key_of,
 };
 use crate::scene::Scene;
 use census::Census;
 use flow::Flows;
-use invariance::{Gathered, MIN_MOVES, Run, Test, by_itself};
+use invariance::{Gathered, Run, Test, by_itself};
 use judge::{Law, Subject, examine};
 
 pub use ergodicity::ClassVisits;
@@ -126,12 +126,7 @@ pub fn verify(
         return Err(VerifyError::Dark(samples));
     }
     let energy = census.lengths(scene.max_edges());
-    let basis = MixtureBasis {
-        camera: scene.camera(),
-        max_edges: scene.max_edges(),
-        features: scene.features(),
-        energy: &energy,
-    };
+    let basis = MixtureBasis::of(scene, &energy);
     let mixture = Mixture::new(&settings.options, &basis);
     let wanted = select(&mixture, &settings.strategies)?;
     let mut report = empty_report(scene, settings, &mixture);
@@ -208,9 +203,8 @@ fn verify_mixture(
 fn select(mixture: &Mixture, names: &[String]) -> Result<Vec<usize>, VerifyError> {
     let on = mixture.names();
     let find = |name: &String| {
-        let key = |name: &str| name.replace(' ', "-");
         on.iter()
-            .position(|other| key(other) == key(name))
+            .position(|other| key_of(other) == key_of(name))
             .ok_or_else(|| VerifyError::NotThere(name.clone(), on.join(", ")))
     };
     let found: Vec<usize> = names.iter().map(find).collect::<Result<_, _>>()?;
@@ -274,7 +268,7 @@ fn largest_flows(name: &str, gathered: &Gathered, census: &Census) -> Vec<FlowRo
         .flows
         .pairs
         .iter()
-        .filter(|(_, flow)| flow.forth >= MIN_MOVES && flow.back >= MIN_MOVES)
+        .filter(|(_, flow)| flow.is_judged())
         .map(|((a, b), flow)| FlowRow {
             strategy: name.to_owned(),
             classes: [a.to_string(), b.to_string()],

@@ -128,8 +128,7 @@ impl PrimaryEnsemble {
 
     /// The image in radiance of the file's units; black without steps.
     pub fn image(&self, scene: &Scene) -> Film {
-        let mut image = self.lanes[0].film.clone();
-        self.lanes[1..].iter().for_each(|lane| image.add(&lane.film));
+        let mut image = Film::sum(self.lanes.iter().map(|lane| &lane.film));
         let pixels = scene.camera().pixel_count() as f64;
         image.scale(scene.radiance_scale() * pixels / self.steps.max(1) as f64);
         image

@@ -63,19 +63,8 @@ struct Loader {
 impl Loader {
     fn new(path: &Path, name: &str) -> Self {
         let view = viewpoint::guess(&[]);
-        let description = SceneDescription {
-            name: name.to_owned(),
-            camera: view.camera,
-            width: view.width,
-            height: view.height,
-            max_edges: DEFAULT_MAX_EDGES,
-            materials: Vec::new(),
-            textures: Vec::new(),
-            meshes: Vec::new(),
-            spheres: Vec::new(),
-            lights: Vec::new(),
-            lens: None,
-        };
+        let size = [view.width, view.height];
+        let description = SceneDescription::empty(name, view.camera, size, DEFAULT_MAX_EDGES);
         let origins = Origins::of_file(path);
         Self { description, origins, palette: Palette::default(), warnings: Vec::new() }
     }
