@@ -17,3 +17,6 @@ pub mod render;
 pub mod scene;
 pub mod service;
 pub mod verify;
+
+#[cfg(test)]
+mod extremes;

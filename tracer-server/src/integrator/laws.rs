@@ -15,9 +15,9 @@ use crate::scene::fixtures::{
 use crate::scene::load::load;
 use crate::scene::{BsdfDescription, Glow, Scene, builtin};
 
-const BLACK: BsdfDescription = lambert(0.0, 0.0, 0.0);
+pub(crate) const BLACK: BsdfDescription = lambert(0.0, 0.0, 0.0);
 
-fn settings(seed: u64, chains: u32) -> EnsembleSettings {
+pub(crate) fn settings(seed: u64, chains: u32) -> EnsembleSettings {
     EnsembleSettings {
         seed,
         chains,
@@ -27,19 +27,19 @@ fn settings(seed: u64, chains: u32) -> EnsembleSettings {
     }
 }
 
-fn path_traced(scene: &Scene, seed: u64, samples: u64) -> Film {
+pub(crate) fn path_traced(scene: &Scene, seed: u64, samples: u64) -> Film {
     let mut tracer = PathTracer::new(scene, seed);
     tracer.advance(scene, samples, 2);
     tracer.image(scene)
 }
 
-fn bidirectional(scene: &Scene, seed: u64, samples: u64) -> Film {
+pub(crate) fn bidirectional(scene: &Scene, seed: u64, samples: u64) -> Film {
     let mut tracer = BidirectionalTracer::new(scene, seed);
     tracer.advance(scene, samples, 2);
     tracer.image(scene)
 }
 
-fn metropolis(scene: &Scene, seed: u64, steps: u64) -> Film {
+pub(crate) fn metropolis(scene: &Scene, seed: u64, steps: u64) -> Film {
     let mut ensemble = Ensemble::new(scene, &settings(seed, 64), |_| ());
     ensemble.advance(scene, steps, None);
     ensemble.image(scene)
@@ -52,7 +52,7 @@ fn primary_sample(scene: &Scene, sampler: PrimarySampler, seed: u64, steps: u64)
     ensemble.image(scene)
 }
 
-fn pixels(film: &Film) -> Vec<[f64; 3]> {
+pub(crate) fn pixels(film: &Film) -> Vec<[f64; 3]> {
     film.pixels().iter().map(|&pixel| pixel.into()).collect()
 }
 
@@ -195,7 +195,7 @@ fn assert_mean_of_all(name: &str, expected: f64, scene: &Scene) {
 }
 
 /// A closed room whose walls emit 1 and reflect `rho`.
-fn furnace(rho: f64, max_edges: usize) -> Fixture {
+pub(crate) fn furnace(rho: f64, max_edges: usize) -> Fixture {
     Fixture::new(DVec3::new(0.2, 0.1, 0.3), DVec3::new(-0.5, 0.2, -1.0), 70.0)
         .room(&[lambert(rho, rho, rho); 6], Rgb::WHITE)
         .film(8, 8)
@@ -257,13 +257,13 @@ fn glass_in_an_even_glow_is_invisible() {
 
 /// Radiance that a plane with albedo 0.6 at the origin reflects of a sphere at `(0, height, aside)`
 /// that emits 5: the irradiance is `pi L (R / d)^2 cos`.
-fn lit_by_sphere(radius: f64, height: f64, aside: f64) -> f64 {
+pub(crate) fn lit_by_sphere(radius: f64, height: f64, aside: f64) -> f64 {
     let distance = height.hypot(aside);
     0.6 * 5.0 * (radius / distance).powi(2) * height / distance
 }
 
 /// A plane lit by a sphere, and a narrow view of the origin from the side.
-fn sphere_over_plane(radius: f64, height: f64, aside: f64) -> Fixture {
+pub(crate) fn sphere_over_plane(radius: f64, height: f64, aside: f64) -> Fixture {
     Fixture::new(DVec3::new(3.0, 2.0, 0.0), DVec3::ZERO, 0.05)
         .quad(lambert(0.6, 0.6, 0.6), Rgb::BLACK, [-9., 0., -9.], [0., 0., 18.], [18., 0., 0.])
         .sphere(BLACK, Rgb::grey(5.0), [0.0, height, aside], radius)

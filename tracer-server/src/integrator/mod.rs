@@ -9,6 +9,6 @@ pub use bidirectional::BidirectionalTracer;
 pub use path_tracer::PathTracer;
 
 #[cfg(test)]
-mod laws;
+pub(crate) mod laws;
 #[cfg(test)]
 mod peers;

@@ -40,7 +40,7 @@ impl Fixture {
         Self { description: SceneDescription::empty("fixture", camera, [32, 32], 6) }
     }
 
-    fn material(&mut self, bsdf: BsdfDescription, emission: Rgb) -> u16 {
+    pub(crate) fn material(&mut self, bsdf: BsdfDescription, emission: Rgb) -> u16 {
         let name = format!("material {}", self.description.materials.len());
         self.description.materials.push(Material { emission, ..Material::new(name, bsdf) });
         (self.description.materials.len() - 1) as u16
@@ -137,6 +137,17 @@ impl Fixture {
                 *intensity = *intensity * (factor * factor);
             }
         }
+    }
+
+    /// Moves every mesh, every sphere and the camera.
+    pub(crate) fn translate(&mut self, by: DVec3) {
+        let description = &mut self.description;
+        description.camera.origin += by;
+        description.camera.target += by;
+        for mesh in &mut description.meshes {
+            mesh.positions.iter_mut().for_each(|p| *p += by);
+        }
+        description.spheres.iter_mut().for_each(|sphere| sphere.centre += by);
     }
 
     pub(crate) fn build(&self) -> Scene {

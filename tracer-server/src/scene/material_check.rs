@@ -10,7 +10,7 @@ use crate::bsdf::Fresnel;
 const MAX_RADIANCE: f64 = 1e15;
 /// Indices of refraction beyond this (or below its inverse) are a mistake, and so are extinction
 /// coefficients beyond it.
-const MAX_ETA: f64 = 100.0;
+const MAX_ETA: f64 = 1000.0;
 
 /// Checks a texture's size.
 pub(super) fn check_texture(texture: &Texture) -> Result<(), Fault> {
