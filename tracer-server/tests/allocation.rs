@@ -81,12 +81,12 @@ fn advance(
 }
 
 /// Allocations and reallocations in [`STEPS`] steps, and how many proposals were accepted.
-fn count(scene: &Scene, strategies: StrategyOptions) -> (usize, u64) {
+fn count(scene: &Scene, strategies: &StrategyOptions) -> (usize, u64) {
     let settings = EnsembleSettings {
         seed: 3,
         chains: CHAINS,
         threads: 1,
-        strategies,
+        strategies: *strategies,
         bootstrap_samples: 1 << 13,
     };
     let ensemble = Ensemble::new(scene, &settings, |_| ());
@@ -119,7 +119,7 @@ fn a_step_allocates_nothing() {
     for description in &scenes {
         let scene = Scene::new(description).expect("a sound scene");
         for (strategies, options) in mixtures() {
-            let (allocations, accepted) = count(&scene, options);
+            let (allocations, accepted) = count(&scene, &options);
             let what = format!("{}, {strategies}", scene.name());
             assert!(accepted > 500, "{what}: hardly anything happened: {accepted} accepted");
             assert_eq!(allocations, 0, "{what}: allocations in {STEPS} steps");

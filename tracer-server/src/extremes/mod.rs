@@ -24,7 +24,7 @@ const SIDE: u32 = 8;
 /// What an image must be.
 enum Expected {
     /// That of another scene times a factor, in quarters and as a whole.
-    Like(Fixture, f64),
+    Like(Box<Fixture>, f64),
     /// This mean, up to a relative error that the scene itself has.
     Mean(f64, f64),
     /// The same from chains and from bidirectional path tracing, in quarters and as a whole.
@@ -42,6 +42,10 @@ struct Extreme {
 
 fn row(name: &'static str, scene: Fixture, expected: Expected) -> Extreme {
     Extreme { name, scene, expected }
+}
+
+fn like(base: Fixture, factor: f64) -> Expected {
+    Expected::Like(Box::new(base), factor)
 }
 
 type Image = Vec<[f64; 3]>;
