@@ -28,7 +28,7 @@ pub use filter::{
 };
 pub use id::{ChainId, MaterialId, PathId, StrategyId};
 pub use mesh::{MaterialInfo, SceneFrame, SceneMesh};
-pub use metric::{mean_ratio, relative_mse};
+pub use metric::{Floor, mean_of_smallest, mean_ratio, relative_errors, relative_mse};
 pub use session::{
     ChainTotals, FailureCount, FilmFrame, FilmTile, FilterReply, Gap, Role, Statistics,
     StrategyStatistics, Welcome,

@@ -6,20 +6,62 @@ fn square(pixel: Rgb) -> f64 {
     pixel.r * pixel.r + pixel.g * pixel.g + pixel.b * pixel.b
 }
 
-/// Relative mean squared error of `image` against `reference`.
+/// What keeps the error of dark pixels from ruling a relative error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Floor {
+    /// A hundredth of the reference's mean square: exposure does not matter.
+    Relative,
+    /// This much, in squared units of radiance and added in each channel, as other renderers'
+    /// published errors have it.
+    Absolute(f64),
+}
+
+/// Relative squared error of each pixel of `image` against `reference`.
 ///
-/// Per pixel `|I - R|^2 / (|R|^2 + 0.01 mean |R|^2)`, averaged over the pixels: noise counts alike
-/// in bright and dark parts, and the second term keeps black pixels from ruling the sum. NaN when
-/// the sizes differ, there are no pixels, or any value is NaN. For an unbiased renderer it falls
-/// in inverse proportion to the time spent.
-pub fn relative_mse(image: &[Rgb], reference: &[Rgb]) -> f64 {
+/// With [`Floor::Relative`] `|I - R|^2 / (|R|^2 + 0.01 mean |R|^2)`; with [`Floor::Absolute`] the
+/// mean over the channels of `(I - R)^2 / (R^2 + floor)`. Empty when the sizes differ.
+pub fn relative_errors(image: &[Rgb], reference: &[Rgb], floor: Floor) -> Vec<f64> {
     if image.len() != reference.len() {
+        return Vec::new();
+    }
+    let pairs = image.iter().zip(reference);
+    match floor {
+        Floor::Relative => {
+            let sum = reference.iter().map(|&pixel| square(pixel)).sum::<f64>();
+            let floor = 0.01 * sum / reference.len() as f64;
+            pairs.map(|(&i, &r)| square(i + r * -1.0) / (square(r) + floor)).collect()
+        }
+        Floor::Absolute(floor) => {
+            let channel = |i: f64, r: f64| (i - r).powi(2) / (r * r + floor);
+            let mean = |i: &Rgb, r: &Rgb| {
+                (channel(i.r, r.r) + channel(i.g, r.g) + channel(i.b, r.b)) / 3.0
+            };
+            pairs.map(|(i, r)| mean(i, r)).collect()
+        }
+    }
+}
+
+/// Relative mean squared error of `image` against `reference`: the mean of [`relative_errors`].
+///
+/// Noise counts alike in bright and dark parts. NaN when the sizes differ, there are no pixels, or
+/// any value is NaN. For an unbiased renderer it falls in inverse proportion to the time spent.
+pub fn relative_mse(image: &[Rgb], reference: &[Rgb]) -> f64 {
+    mean_of_smallest(relative_errors(image, reference, Floor::Relative), 1.0)
+}
+
+/// Mean of the smallest `share` of `errors`: what is left without the worst pixels.
+///
+/// NaN when there is no error, or any is NaN.
+pub fn mean_of_smallest(mut errors: Vec<f64>, share: f64) -> f64 {
+    if errors.iter().any(|error| error.is_nan()) {
         return f64::NAN;
     }
-    let pixels = reference.len() as f64;
-    let floor = 0.01 * reference.iter().map(|&pixel| square(pixel)).sum::<f64>() / pixels;
-    let error = |(&i, &r): (&Rgb, &Rgb)| square(i + r * -1.0) / (square(r) + floor);
-    image.iter().zip(reference).map(error).sum::<f64>() / pixels
+    let kept = ((errors.len() as f64 * share).floor() as usize).min(errors.len());
+    if kept < errors.len() {
+        errors.sort_by(f64::total_cmp);
+        errors.truncate(kept);
+    }
+    errors.iter().sum::<f64>() / kept as f64
 }
 
 /// Sum of all channels of `image` over that of `reference`: one when no energy is lost.
@@ -58,6 +100,19 @@ mod tests {
         image[5] = Rgb::grey(f64::NAN);
         assert!(relative_mse(&image, &[GREY; 16]).is_nan(), "NaN is not averaged away");
         assert!(relative_mse(&image, &[GREY; 15]).is_nan(), "sizes differ");
+    }
+
+    #[test]
+    fn the_worst_pixels_can_be_left_out() {
+        let mut image = vec![GREY; 1000];
+        image[7] = Rgb::grey(500.0);
+        image[8] = Rgb::grey(0.6);
+        let errors = relative_errors(&image, &vec![GREY; 1000], Floor::Absolute(0.01));
+        assert!((errors[8] - 0.01 / 0.26).abs() < 1e-12, "{}", errors[8]);
+        let trimmed = mean_of_smallest(errors.clone(), 0.999);
+        assert!((trimmed - errors[8] / 999.0).abs() < 1e-12, "{trimmed}");
+        assert!(mean_of_smallest(errors, 1.0) > 900.0, "all of them");
+        assert!(mean_of_smallest(vec![f64::NAN, 1.0], 0.5).is_nan(), "NaN is never left out");
     }
 
     #[test]

@@ -1,15 +1,17 @@
 //! How many mutations a second each strategy makes, and what share that is of what the rays alone
 //! would allow: `cargo bench -p tracer-server`.
 //!
-//! One thread. The limit is measured in the same run: rays like those of the scene's own paths, cast
-//! with nothing else around them.
+//! One thread, CPU time. The limit is measured in the same run: rays like those of the scene's own
+//! paths, cast with nothing else around them. Scenes can be named: `-- door scenes/room.toml`.
 
 use std::hint::black_box;
 use std::io::{self, Write as _};
-use std::time::{Duration, Instant};
+use std::path::Path;
+use std::time::Duration;
 
 use comfy_table::Table;
 use comfy_table::presets::UTF8_FULL_CONDENSED;
+use cpu_time::ProcessTime;
 use tracer_server::chain::{Ensemble, EnsembleSettings};
 use tracer_server::math::{Rng, Stream};
 use tracer_server::mutation::{KINDS, OptionError, StrategyOptions};
@@ -24,16 +26,12 @@ const STEPS: u64 = 4000;
 
 fn main() -> anyhow::Result<()> {
     let named: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
-    let scenes = if named.is_empty() {
-        ["cornell", "caustic", "mirror-caustic", "door"].map(str::to_owned).to_vec()
-    } else {
-        named
-    };
+    let scenes = if named.is_empty() { usual_scenes() } else { named };
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED).set_header([
         "scene",
         "strategies",
-        "mutations/s",
+        "mutations per CPU second",
         "rays, shadow rays",
         "rays alone",
         "share",
@@ -47,6 +45,26 @@ fn main() -> anyhow::Result<()> {
     }
     writeln!(io::stdout().lock(), "{}", table.trim_fmt())?;
     Ok(())
+}
+
+/// Built-in scenes, and others' where they are at hand: in the folder that the variable
+/// `LVIS_SHARED` names.
+fn usual_scenes() -> Vec<String> {
+    let mut scenes = ["cornell", "caustic", "mirror-caustic", "door"].map(str::to_owned).to_vec();
+    let usual = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared").into_os_string();
+    let shared = std::env::var_os("LVIS_SHARED").unwrap_or_else(usual);
+    for scene in [
+        "peer-cornell/cornell_mlt.xml",
+        "peer-caustic/caustic_mlt.xml",
+        "veach-ajar",
+        "veach-bidir",
+    ] {
+        let file = Path::new(&shared).join("scenes").join(scene);
+        if file.exists() {
+            scenes.push(file.display().to_string());
+        }
+    }
+    scenes
 }
 
 /// The mixture as it is used, and each strategy nearly alone: the independent mutation stays in at
@@ -131,7 +149,7 @@ fn rng_free_index(n: usize, counter: usize) -> usize {
 
 fn best_time(mut work: impl FnMut()) -> Duration {
     let time = |work: &mut dyn FnMut()| {
-        let start = Instant::now();
+        let start = ProcessTime::now();
         work();
         start.elapsed()
     };

@@ -13,6 +13,7 @@ mod meter;
 pub mod render;
 pub mod scenes;
 pub mod serve;
+pub mod trade;
 pub mod verify;
 
 use std::io::{self, IsTerminal as _, Write as _};
@@ -38,6 +39,7 @@ Examples:
   tracer-server render door -o door.png
   tracer-server serve cornell --seed 7
   tracer-server verify door
+  tracer-server trade door --out trade
 
 Exit codes: 0 done, 1 a check failed, 2 bad usage or input."
 )]
@@ -59,6 +61,7 @@ pub enum Command {
     Scenes(scenes::ScenesArgs),
     Info(info::InfoArgs),
     Verify(verify::VerifyArgs),
+    Trade(trade::TradeArgs),
 }
 
 impl Command {
@@ -69,6 +72,7 @@ impl Command {
             Self::Scenes(args) => scenes::run(args),
             Self::Info(args) => info::run(args),
             Self::Verify(args) => verify::run(args),
+            Self::Trade(args) => trade::run(args),
         }
     }
 }

@@ -15,10 +15,11 @@ use common::{mean_ratio, relative_mse};
 use super::chains::ChainArgs;
 use super::input::{self, FilmSize};
 use super::meter::Meter;
+use crate::film::Film;
 use crate::image_file;
 use crate::integrator::pssmlt::{PrimarySampler, PrimarySettings};
 use crate::render::{Budget, Integrator, Progress, RenderSettings, Rendering, Report, render};
-use crate::scene::MAX_EDGES;
+use crate::scene::{MAX_EDGES, Scene};
 
 /// Mutations, or samples, for each pixel unless the user says otherwise.
 const DEFAULT_PER_PIXEL: u64 = 256;
@@ -94,7 +95,8 @@ pub enum PrimarySamplerName {
 }
 
 impl PrimaryArgs {
-    fn settings(&self, integrator: IntegratorName) -> anyhow::Result<PrimarySettings> {
+    /// The settings, refused where `integrator` needs none.
+    pub(super) fn settings(&self, integrator: IntegratorName) -> anyhow::Result<PrimarySettings> {
         let usual = PrimarySettings::default();
         let silent = self.primary_sampler.is_none() && self.large_step.is_none();
         ensure!(
@@ -138,7 +140,8 @@ impl From<IntegratorName> for Integrator {
     }
 }
 
-fn seconds(text: &str) -> Result<Duration, String> {
+/// A positive number of seconds.
+pub(super) fn seconds(text: &str) -> Result<Duration, String> {
     let time = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
     time.filter(|time| !time.is_zero()).ok_or_else(|| "give a positive number".to_owned())
 }
@@ -153,16 +156,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<ExitCode> {
     let (scene, wishes) = input::scene_with_depth(&args.scene, args.film, args.max_depth)?;
     let reference = args.reference.as_deref().map(image_file::read_exr).transpose()?;
     if let Some(reference) = &reference {
-        let camera = scene.camera();
-        ensure!(
-            (reference.width(), reference.height()) == (camera.width, camera.height),
-            "the reference has {} x {} pixels and the film {} x {}; choose the film with --width \
-             and --height",
-            reference.width(),
-            reference.height(),
-            camera.width,
-            camera.height,
-        );
+        check_reference(reference, &scene)?;
     }
     let settings = RenderSettings {
         integrator: args.integrator.into(),
@@ -188,6 +182,21 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<ExitCode> {
     }
     print(&mut io::stdout().lock(), &report, &args.output)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Refuses a reference of another size than the scene's film.
+pub(super) fn check_reference(reference: &Film, scene: &Scene) -> anyhow::Result<()> {
+    let camera = scene.camera();
+    ensure!(
+        (reference.width(), reference.height()) == (camera.width, camera.height),
+        "the reference has {} x {} pixels and the film {} x {}; choose the film with --width and \
+         --height",
+        reference.width(),
+        reference.height(),
+        camera.width,
+        camera.height,
+    );
+    Ok(())
 }
 
 fn check_folder(file: &Path) -> anyhow::Result<()> {
