@@ -12,11 +12,12 @@ mod id;
 mod mesh;
 mod metric;
 mod session;
+mod steering;
 
 pub use batch::{
-    BatchBuilder, BatchError, BatchLimits, BatchOrigin, Completed, NORMAL_SCALE, PathBatch,
-    PathColumns, PathHeader, PathReader, PathView, VertexColumns, VertexRecord, decode_normal,
-    encode_normal,
+    BatchBuilder, BatchError, BatchLimits, BatchOrigin, Completed, MAX_VERTICES, NORMAL_SCALE,
+    PathBatch, PathColumns, PathHeader, PathReader, PathView, VertexColumns, VertexRecord,
+    decode_normal, encode_normal,
 };
 pub use camera::{Camera, CameraError, CameraPose};
 pub use color::Rgb;
@@ -32,4 +33,10 @@ pub use metric::{Floor, mean_of_smallest, mean_ratio, relative_errors, relative_
 pub use session::{
     ChainTotals, FailureCount, FilmFrame, FilmTile, FilterReply, Gap, Role, Statistics,
     StrategyStatistics, Welcome,
+};
+pub use steering::{
+    Appearance, Attendee, Author, ChainCommand, ChainState, ExplorerCommand, ExplorerState,
+    FocusOutcome, FocusPath, FocusStep, Gaze, LEAST_PRECISION, LeaseEvent, LeaseNotice,
+    LeaseRequest, MAX_FAN, MAX_RATE, MAX_STEPS, MAX_WEIGHT, MIN_RATE, MOST_PRECISION, Notice,
+    Order, OrderReply, Pace, Presence, RatioFactors, Seed, SkipTo, StrategySet,
 };

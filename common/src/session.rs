@@ -39,6 +39,9 @@ pub struct Welcome {
     pub max_edges: u32,
     /// The role that was granted.
     pub role: Role,
+    /// What this viewer shows to take up its filter and its role again after its connection broke;
+    /// blank where the daemon knows no such thing.
+    pub resume: String,
 }
 
 /// How often proposals of one strategy failed for one reason.

@@ -8,8 +8,8 @@ mod convert;
 mod fingerprint;
 
 pub use convert::{
-    Hello, MAX_MESSAGE_BYTES, ReceivedScene, SceneAssembler, TracerEvent, ViewerEvent,
-    WantedFilter, WireError, scene_chunks, unchanged_scene,
+    Hello, MAX_MESSAGE_BYTES, NumberedOrder, ReceivedScene, SceneAssembler, TracerEvent,
+    ViewerEvent, WantedFilter, WireError, scene_chunks, unchanged_scene,
 };
 
 pub use fingerprint::Fingerprint;
@@ -46,7 +46,7 @@ pub struct ProtocolVersion {
 
 impl ProtocolVersion {
     /// What this crate speaks.
-    pub const CURRENT: Self = Self { major: 1, minor: 1 };
+    pub const CURRENT: Self = Self { major: 1, minor: 2 };
 }
 
 impl std::fmt::Display for ProtocolVersion {

@@ -40,6 +40,8 @@ async fn watch(address: &str) -> (TracerClient<Channel>, Streaming<v1::TracerMes
         wanted_role: Role::Observer,
         data_budget: 0,
         filter: None,
+        focus: false,
+        resume: String::new(),
     };
     let messages = tokio_stream::once(v1::ViewerMessage::from(ViewerEvent::Hello(hello)));
     let stream = client.watch(messages).await.expect("welcome").into_inner();

@@ -32,6 +32,8 @@ impl Viewer {
             wanted_role: Role::Observer,
             data_budget: 1 << 28,
             filter,
+            focus: false,
+            resume: String::new(),
         };
         let (outgoing, outbox) = mpsc::channel(8);
         outgoing.try_send(ViewerEvent::Hello(hello).into()).expect("an empty outbox");

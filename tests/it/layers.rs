@@ -174,6 +174,7 @@ const RULES: &[Rule] = &[
             "viewer-client/src/command",
             "viewer-client/src/film",
             "viewer-client/src/model",
+            "viewer-client/src/steering",
             "viewer-client/src/store",
         ],
         except: &[],

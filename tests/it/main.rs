@@ -10,6 +10,7 @@ mod filters;
 mod layers;
 mod reconnect;
 mod security;
+mod steering;
 mod stream;
 mod tidy;
 mod workspace;

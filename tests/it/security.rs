@@ -5,7 +5,7 @@ use std::time::Duration;
 use proto::TracerEvent;
 use tracer_server::hub::HubLimits;
 use tracer_server::service::{Access, Certificate, Security, Server, Token};
-use viewer_client::connection::{Bearer, Peer, Session, SessionError, Trust};
+use viewer_client::connection::{Bearer, Greeting, Peer, Session, SessionError, Trust};
 
 use crate::stream::fixture;
 
@@ -36,7 +36,7 @@ fn bearer(token: &str) -> Bearer {
 /// That the session begins, and the scene comes over the same door.
 async fn is_let_in(peer: &Peer) {
     let mut session =
-        fixture::soon("the greeting", Session::open(peer, "test", None)).await.expect("in");
+        fixture::soon("the greeting", Session::open(peer, Greeting::default())).await.expect("in");
     let first = fixture::soon("the welcome", session.next()).await.expect("readable");
     assert!(matches!(first, TracerEvent::Welcome(_)), "{first:?}");
     let scene = session.scene_fetcher().fetch(String::new());
@@ -46,7 +46,9 @@ async fn is_let_in(peer: &Peer) {
 
 /// The complaint of whoever is not let in.
 async fn is_kept_out(peer: &Peer) -> SessionError {
-    fixture::soon("the refusal", Session::open(peer, "test", None)).await.expect_err("kept out")
+    fixture::soon("the refusal", Session::open(peer, Greeting::default()))
+        .await
+        .expect_err("kept out")
 }
 
 #[tokio::test]
@@ -102,7 +104,7 @@ async fn a_silent_peer_does_not_hold_the_door() {
     }
     let peer = peer(&server, Trust::Pinned(certificate.fingerprint()), DRIVER);
     let patient = async {
-        while Session::open(&peer, "test", None).await.is_err() {
+        while Session::open(&peer, Greeting::default()).await.is_err() {
             tokio::time::sleep(Duration::from_millis(100)).await;
         }
     };

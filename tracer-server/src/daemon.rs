@@ -15,6 +15,7 @@ use crate::mutation::Mixture;
 use crate::path::Failure;
 use crate::scene::Scene;
 use crate::service::{Security, Server, SessionInfo, StartError};
+use crate::steering;
 
 /// Where a daemon listens by default.
 pub const DEFAULT_ADDRESS: SocketAddr =
@@ -69,7 +70,9 @@ impl Daemon {
     /// Starts the chains of `scene`, and shows them to whoever connects.
     pub fn start(scene: Arc<Scene>, options: &DaemonOptions) -> Result<Self, DaemonError> {
         let info = session_info(&scene, &options.ensemble);
-        let server = Server::start(options.listen, info, options.limits, options.security.clone())?;
+        let (steering, _) = steering::channel();
+        let security = options.security.clone();
+        let server = Server::start(options.listen, info, options.limits, steering, security)?;
         let engine = Engine::start(scene, &options.ensemble, server.hub().clone())
             .map_err(DaemonError::Engine)?;
         Ok(Self { server, _engine: engine })
@@ -104,6 +107,7 @@ fn session_info(scene: &Scene, ensemble: &EnsembleSettings) -> SessionInfo {
         chains: ensemble.chains,
         max_edges: scene.max_edges() as u32,
         role: Role::Observer,
+        resume: String::new(),
     };
     SessionInfo { welcome, mesh: scene.preview_mesh(), objects: scene.objects().to_vec() }
 }

@@ -16,6 +16,7 @@ pub mod path;
 pub mod render;
 pub mod scene;
 pub mod service;
+pub mod steering;
 pub mod trade;
 pub mod verify;
 

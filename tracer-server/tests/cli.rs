@@ -67,6 +67,8 @@ async fn watch_to_the_end(address: &str, told: impl FnOnce()) -> String {
         wanted_role: Role::Observer,
         data_budget: 0,
         filter: None,
+        focus: false,
+        resume: String::new(),
     };
     let messages = tokio_stream::once(v1::ViewerMessage::from(ViewerEvent::Hello(hello)));
     let mut stream = client.watch(messages).await.expect("welcome").into_inner();

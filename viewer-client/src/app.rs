@@ -7,7 +7,7 @@ use egui_wgpu::RenderState;
 
 use crate::camera::{Bounds, ViewCamera};
 use crate::command::{CameraCommand, CloudCommand, Command};
-use crate::connection::{Delivery, Link};
+use crate::connection::{Delivery, FocusNews, Link};
 use crate::film::Film;
 use crate::gpu::{Quality, Renderer, Uploaded};
 use crate::keys;
@@ -45,6 +45,8 @@ pub struct Viewer {
     closing: bool,
     /// Commands for the camera that wait for the scene.
     script: Vec<Command>,
+    /// Orders given so far: the number of the last one.
+    orders: u32,
 }
 
 /// What on the graphics card no longer fits what the viewer holds.
@@ -74,6 +76,7 @@ impl Viewer {
             started: Instant::now(),
             closing: false,
             script: Vec::new(),
+            orders: 0,
         }
     }
 
@@ -170,6 +173,17 @@ impl Viewer {
             self.settings.image.suit(statistics.normalization);
             self.status.statistics(statistics);
         }
+        for news in delivery.focus {
+            match news {
+                FocusNews::Path(path) => self.status.steering.focus.take_path(path),
+                FocusNews::Step(step) => self.status.steering.focus.take_step(step),
+                FocusNews::Gap(steps) => self.status.steering.focus.miss(steps),
+            }
+        }
+        delivery.notices.into_iter().for_each(|notice| self.status.steering.take(notice));
+        if let Some(reply) = delivery.filter {
+            self.status.filter = Some(reply);
+        }
         for tile in delivery.film.values() {
             if !self.film.accept(tile) {
                 tracing::warn!("a tile of the image contradicts itself and was left out");
@@ -220,6 +234,7 @@ impl Viewer {
             }
             Command::Image(command) => self.settings.image.apply(command),
             Command::Layout(command) => self.settings.layout.apply(command),
+            Command::Order(order) => self.send(order),
             Command::Reconnect => {
                 if let Some(link) = &self.link {
                     link.retry_now();
@@ -229,6 +244,14 @@ impl Viewer {
         }
         // The model of the camera would stand before the user's eyes.
         self.stale.aids |= matches!(command, Command::Camera(CameraCommand::Through(_)));
+    }
+
+    fn send(&mut self, order: common::Order) {
+        self.orders += 1;
+        let sent = self.link.as_ref().is_some_and(|link| link.order(self.orders, order));
+        if !sent {
+            self.status.steering.remark("not sent: there is no connection".to_owned());
+        }
     }
 
     /// Shows everything, and does what the user asks for.

@@ -23,6 +23,7 @@ pub mod run;
 pub mod script;
 pub mod settings;
 pub mod status;
+pub mod steering;
 pub mod store;
 #[cfg(test)]
 mod synthetic;

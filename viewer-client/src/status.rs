@@ -2,9 +2,10 @@
 
 use std::time::Instant;
 
-use common::{Statistics, Welcome};
+use common::{FilterReply, Role, Statistics, Welcome};
 
 use crate::rates::{History, RateMeter};
+use crate::steering::Steering;
 
 /// How the connection is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,6 +44,10 @@ pub struct Status {
     pub byte_rate: RateMeter,
     /// How often the connection was made anew.
     pub reconnects: u32,
+    /// The answer to the filter that was set last.
+    pub filter: Option<FilterReply>,
+    /// Who steers, and what the explorer does.
+    pub steering: Steering,
 }
 
 impl Status {
@@ -58,12 +63,19 @@ impl Status {
             path_rate: RateMeter::default(),
             byte_rate: RateMeter::default(),
             reconnects: 0,
+            filter: None,
+            steering: Steering::default(),
         }
     }
 
     /// True while data may come.
     pub fn is_connected(&self) -> bool {
         self.link == LinkState::Connected
+    }
+
+    /// What this viewer may do now.
+    pub fn role(&self) -> Role {
+        self.welcome.as_ref().map_or(Role::Observer, |w| self.steering.role(w.session))
     }
 
     /// Takes a daemon's welcome; it is another daemon, or the same one anew.
@@ -73,6 +85,8 @@ impl Status {
         }
         self.welcome = Some(welcome);
         self.statistics = None;
+        self.filter = None;
+        self.steering.focus.clear();
         self.mutation_history.clear();
     }
 

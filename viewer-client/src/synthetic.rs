@@ -36,6 +36,7 @@ pub(crate) fn welcome() -> Welcome {
         chains: 128,
         max_edges: 20,
         role: Role::Observer,
+        resume: String::new(),
     }
 }
 

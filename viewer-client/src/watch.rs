@@ -8,7 +8,7 @@ use proto::{TracerEvent, WantedFilter};
 use serde_json::{Value, json};
 
 use crate::cli::WatchArgs;
-use crate::connection::Session;
+use crate::connection::{Greeting, Session};
 use crate::format;
 
 /// Prints what comes, until `--count` batches with paths have come, the daemon ends or the reader goes away.
@@ -20,7 +20,8 @@ pub fn run(args: &WatchArgs) -> anyhow::Result<()> {
 async fn watch(args: &WatchArgs) -> anyhow::Result<()> {
     let filter = args.filter.clone().map(|text| WantedFilter { revision: 1, text });
     let peer = args.trust.peer(args.address.clone())?;
-    let mut session = Session::open(&peer, "Lvis watch", filter).await?;
+    let greeting = Greeting { name: "Lvis watch".to_owned(), filter, ..Greeting::default() };
+    let mut session = Session::open(&peer, greeting).await?;
     let mut names = Names::default();
     let mut batches = 0;
     let mut out = io::stdout();
@@ -84,6 +85,11 @@ impl Names {
                 Some(if json { reply_json(reply).to_string() } else { reply_line(reply) })
             }
             TracerEvent::Film(_)
+            | TracerEvent::ExplorerFilm(_)
+            | TracerEvent::FocusPath(_)
+            | TracerEvent::FocusStep(_)
+            | TracerEvent::FocusGap(_)
+            | TracerEvent::Notice(_)
             | TracerEvent::SnapshotEnd
             | TracerEvent::Goodbye(_)
             | TracerEvent::Unknown => None,

@@ -58,7 +58,7 @@ impl BatchBuilder {
         }
         self.push_header(header, (light, eye), vertices.len() - light - eye);
         for vertex in &vertices[light..vertices.len() - eye] {
-            self.push_vertex(vertex);
+            self.batch.vertices.push(vertex);
         }
         completed
     }
@@ -90,15 +90,5 @@ impl BatchBuilder {
         p.film.push(header.film);
         p.luminance.push(header.luminance);
         p.rgb.push(header.rgb);
-    }
-
-    fn push_vertex(&mut self, vertex: &VertexRecord) {
-        let v = &mut self.batch.vertices;
-        v.position.push(vertex.position);
-        v.normal.push(vertex.normal);
-        v.kind.push(vertex.kind as u8);
-        v.event.push(vertex.event as u8);
-        v.material.push(vertex.material);
-        v.primitive.push(vertex.primitive);
     }
 }

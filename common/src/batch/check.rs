@@ -55,6 +55,11 @@ pub(super) fn values(paths: &PathColumns, vertices: &VertexColumns) -> Result<()
     finite("film", paths.film.as_flattened())?;
     finite("luminance", &paths.luminance)?;
     finite("rgb", paths.rgb.as_flattened())?;
+    self::vertices(vertices)
+}
+
+/// Values of vertices.
+pub(super) fn vertices(vertices: &VertexColumns) -> Result<(), BatchError> {
     finite("position", vertices.position.as_flattened())?;
     known("kind", &vertices.kind, |code| VertexKind::from_code(code).is_some())?;
     known("event", &vertices.event, |code| Event::from_code(code).is_some())

@@ -23,7 +23,7 @@ pub use origin::BatchOrigin;
 pub use reader::{PathReader, PathView};
 
 /// No path has more vertices than this.
-const MAX_VERTICES: usize = 65;
+pub const MAX_VERTICES: usize = 65;
 
 /// One vertex as it travels: 24 bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,6 +114,36 @@ pub struct VertexColumns {
     pub material: Vec<u16>,
     /// Primitive indices.
     pub primitive: Vec<u32>,
+}
+
+impl VertexColumns {
+    /// Appends a vertex.
+    pub fn push(&mut self, vertex: &VertexRecord) {
+        self.position.push(vertex.position);
+        self.normal.push(vertex.normal);
+        self.kind.push(vertex.kind as u8);
+        self.event.push(vertex.event as u8);
+        self.material.push(vertex.material);
+        self.primitive.push(vertex.primitive);
+    }
+
+    /// The vertices of columns that come from elsewhere and have one length.
+    pub fn records(&self) -> Result<Vec<VertexRecord>, BatchError> {
+        check::vertices(self)?;
+        Ok((0..self.kind.len()).map(|i| self.record(i)).collect())
+    }
+
+    /// Vertex number `i` of columns that were checked.
+    fn record(&self, i: usize) -> VertexRecord {
+        VertexRecord {
+            position: self.position[i],
+            normal: self.normal[i],
+            kind: VertexKind::from_code(self.kind[i]).unwrap_or(VertexKind::Diffuse),
+            event: Event::from_code(self.event[i]).unwrap_or(Event::End),
+            material: self.material[i],
+            primitive: self.primitive[i],
+        }
+    }
 }
 
 /// A self-contained batch of paths, checked: every record can be reconstructed.
@@ -289,16 +319,7 @@ impl PathBatch {
     }
 
     fn vertex(&self, i: usize) -> VertexRecord {
-        let v = &self.vertices;
-        VertexRecord {
-            position: v.position[i],
-            normal: v.normal[i],
-            // The codes were checked when the batch was made.
-            kind: VertexKind::from_code(v.kind[i]).unwrap_or(VertexKind::Diffuse),
-            event: Event::from_code(v.event[i]).unwrap_or(Event::End),
-            material: v.material[i],
-            primitive: v.primitive[i],
-        }
+        self.vertices.record(i)
     }
 }
 

@@ -83,6 +83,20 @@ pub(super) fn not_negative(field: &'static str, found: f64) -> Result<f64, WireE
     }
 }
 
+/// A number within `least..=most`; NaN is not.
+pub(super) fn between(
+    field: &'static str,
+    found: f64,
+    least: f64,
+    most: f64,
+) -> Result<f64, WireError> {
+    if (least..=most).contains(&found) {
+        Ok(found)
+    } else {
+        Err(WireError::OutOfBounds { field, found, least, most })
+    }
+}
+
 /// A column of finite numbers.
 pub(super) fn all_finite(field: &'static str, values: &[f32]) -> Result<(), WireError> {
     match values.iter().find(|value| !value.is_finite()) {

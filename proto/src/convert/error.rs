@@ -33,6 +33,18 @@ pub enum WireError {
         /// The largest allowed.
         most: u64,
     },
+    /// A number outside its range, or none at all.
+    #[error("field `{field}` is {found}; it must lie in {least} to {most}")]
+    OutOfBounds {
+        /// The field.
+        field: &'static str,
+        /// What it holds.
+        found: f64,
+        /// The smallest allowed.
+        least: f64,
+        /// The largest allowed.
+        most: f64,
+    },
     /// A number that is NaN, infinite, or of the wrong sign.
     #[error("field `{field}` is {found}, which is not a {wanted} number")]
     BadNumber {

@@ -9,11 +9,15 @@ mod column;
 mod error;
 mod film;
 mod filter;
+mod focus;
 mod path;
 mod scene;
 mod session;
 mod statistics;
+mod steering;
 
+#[cfg(test)]
+mod steering_tests;
 #[cfg(test)]
 mod tests;
 
@@ -21,6 +25,7 @@ pub use error::WireError;
 pub use filter::WantedFilter;
 pub use scene::{ReceivedScene, SceneAssembler, scene_chunks, unchanged_scene};
 pub use session::{Hello, TracerEvent, ViewerEvent};
+pub use steering::NumberedOrder;
 
 /// No message of the protocol is larger: what a receiver should set its decoding limit to.
 pub const MAX_MESSAGE_BYTES: usize = 4 << 20;

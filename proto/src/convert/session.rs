@@ -1,8 +1,12 @@
 //! The two directions of a session.
 
-use common::{FilmTile, FilterReply, Gap, PathBatch, Role, Statistics, Welcome};
+use common::{
+    Appearance, FilmTile, FilterReply, FocusPath, FocusStep, Gap, Notice, PathBatch, Role,
+    Statistics, Welcome,
+};
 
 use super::filter::WantedFilter;
+use super::steering::NumberedOrder;
 use super::{WireError, check};
 use crate::{ProtocolVersion, v1};
 
@@ -19,10 +23,14 @@ pub struct Hello {
     pub data_budget: u64,
     /// Which paths it would like from the beginning.
     pub filter: Option<WantedFilter>,
+    /// It would like every step of the explorer from the beginning.
+    pub focus: bool,
+    /// What an earlier session's welcome gave it to come back with; blank for none.
+    pub resume: String,
 }
 
 /// What a viewer says.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ViewerEvent {
     /// Introduces the viewer.
     Hello(Hello),
@@ -30,6 +38,12 @@ pub enum ViewerEvent {
     SetBudget(u64),
     /// Changes which paths are sent.
     SetFilter(WantedFilter),
+    /// Asks for every step of the explorer, or for no more of them.
+    SetFocus(bool),
+    /// Steers.
+    Order(NumberedOrder),
+    /// Shows something of itself.
+    Appearance(Appearance),
     /// Leaves, with a reason.
     Goodbye(String),
     /// Something of a later version, to be ignored.
@@ -53,6 +67,16 @@ pub enum TracerEvent {
     SnapshotEnd,
     /// Answers a filter.
     FilterReply(FilterReply),
+    /// The explorer's current path.
+    FocusPath(FocusPath),
+    /// A step of the explorer.
+    FocusStep(FocusStep),
+    /// So many steps of the explorer are missing here.
+    FocusGap(u64),
+    /// Rows of the explorer's film.
+    ExplorerFilm(FilmTile),
+    /// Who steers, and what.
+    Notice(Notice),
     /// The tracer ends the session, with a reason.
     Goodbye(String),
     /// Something of a later version, to be ignored.
@@ -68,6 +92,9 @@ impl From<ViewerEvent> for v1::ViewerMessage {
                 Some(Kind::SetBudget(v1::SetBudget { data_budget }))
             }
             ViewerEvent::SetFilter(filter) => Some(Kind::SetFilter(filter.into())),
+            ViewerEvent::SetFocus(on) => Some(Kind::SetFocus(v1::SetFocus { on })),
+            ViewerEvent::Order(order) => Some(Kind::Order(order.into())),
+            ViewerEvent::Appearance(appearance) => Some(Kind::Appearance((&appearance).into())),
             ViewerEvent::Goodbye(reason) => Some(Kind::Goodbye(v1::Goodbye { reason })),
             ViewerEvent::Unknown => None,
         };
@@ -84,6 +111,9 @@ impl TryFrom<v1::ViewerMessage> for ViewerEvent {
             Some(Kind::Hello(hello)) => Self::Hello(hello.try_into()?),
             Some(Kind::SetBudget(budget)) => Self::SetBudget(budget.data_budget),
             Some(Kind::SetFilter(filter)) => Self::SetFilter(filter.try_into()?),
+            Some(Kind::SetFocus(focus)) => Self::SetFocus(focus.on),
+            Some(Kind::Order(order)) => Self::Order(order.try_into()?),
+            Some(Kind::Appearance(appearance)) => Self::Appearance(appearance.try_into()?),
             Some(Kind::Goodbye(goodbye)) => Self::Goodbye(reason(goodbye)?),
             None => Self::Unknown,
         })
@@ -101,12 +131,29 @@ impl From<&TracerEvent> for v1::TracerMessage {
             TracerEvent::Gap(gap) => Some(Kind::Gap((*gap).into())),
             TracerEvent::SnapshotEnd => Some(Kind::SnapshotEnd(v1::SnapshotEnd {})),
             TracerEvent::FilterReply(reply) => Some(Kind::FilterReply(reply.into())),
+            TracerEvent::FocusPath(path) => Some(Kind::FocusPath(path.into())),
+            TracerEvent::FocusStep(step) => Some(Kind::FocusStep(step.into())),
+            TracerEvent::FocusGap(steps) => Some(Kind::FocusGap(v1::FocusGap { steps: *steps })),
+            TracerEvent::ExplorerFilm(tile) => Some(Kind::ExplorerFilm(tile.into())),
+            TracerEvent::Notice(notice) => Some(notice.into()),
             TracerEvent::Goodbye(reason) => {
                 Some(Kind::Goodbye(v1::Goodbye { reason: check::cut(reason, check::MAX_REASON) }))
             }
             TracerEvent::Unknown => None,
         };
         Self { kind }
+    }
+}
+
+impl From<&Notice> for v1::tracer_message::Kind {
+    fn from(notice: &Notice) -> Self {
+        match notice {
+            Notice::Presence(presence) => Self::Presence(presence.into()),
+            Notice::Explorer(state) => Self::ExplorerState(state.into()),
+            Notice::Chains(state) => Self::ChainState(state.into()),
+            Notice::Lease(notice) => Self::LeaseNotice(notice.into()),
+            Notice::Reply(reply) => Self::OrderReply(reply.into()),
+        }
     }
 }
 
@@ -123,6 +170,15 @@ impl TryFrom<v1::TracerMessage> for TracerEvent {
             Some(Kind::Gap(gap)) => Self::Gap(gap.into()),
             Some(Kind::SnapshotEnd(_)) => Self::SnapshotEnd,
             Some(Kind::FilterReply(reply)) => Self::FilterReply(reply.try_into()?),
+            Some(Kind::FocusPath(path)) => Self::FocusPath(path.try_into()?),
+            Some(Kind::FocusStep(step)) => Self::FocusStep(step.try_into()?),
+            Some(Kind::FocusGap(gap)) => Self::FocusGap(gap.steps),
+            Some(Kind::ExplorerFilm(tile)) => Self::ExplorerFilm(tile.try_into()?),
+            Some(Kind::Presence(presence)) => Self::Notice(Notice::Presence(presence.try_into()?)),
+            Some(Kind::ExplorerState(state)) => Self::Notice(Notice::Explorer(state.try_into()?)),
+            Some(Kind::ChainState(state)) => Self::Notice(Notice::Chains(state.try_into()?)),
+            Some(Kind::LeaseNotice(notice)) => Self::Notice(Notice::Lease(notice.try_into()?)),
+            Some(Kind::OrderReply(reply)) => Self::Notice(Notice::Reply(reply.try_into()?)),
             Some(Kind::Goodbye(goodbye)) => Self::Goodbye(reason(goodbye)?),
             None => Self::Unknown,
         })
@@ -156,7 +212,7 @@ impl From<Role> for v1::Role {
 }
 
 /// A role; one of a later version may at least observe.
-fn role(code: i32) -> Role {
+pub(super) fn role(code: i32) -> Role {
     match v1::Role::try_from(code) {
         Ok(v1::Role::Driver) => Role::Driver,
         _ => Role::Observer,
@@ -171,6 +227,8 @@ impl From<Hello> for v1::Hello {
             wanted_role: v1::Role::from(hello.wanted_role).into(),
             data_budget: hello.data_budget,
             filter: hello.filter.map(Into::into),
+            focus: hello.focus,
+            resume: hello.resume,
         }
     }
 }
@@ -189,6 +247,8 @@ impl TryFrom<v1::Hello> for Hello {
             wanted_role: role(wire.wanted_role),
             data_budget: wire.data_budget,
             filter: wire.filter.map(TryInto::try_into).transpose()?,
+            focus: wire.focus,
+            resume: check::text("hello.resume", wire.resume, check::MAX_NAME)?,
         })
     }
 }
@@ -208,6 +268,7 @@ impl From<&Welcome> for v1::Welcome {
             chains: welcome.chains,
             max_edges: welcome.max_edges,
             role: v1::Role::from(welcome.role).into(),
+            resume: welcome.resume.clone(),
         }
     }
 }
@@ -230,6 +291,7 @@ impl TryFrom<v1::Welcome> for Welcome {
             chains: wire.chains,
             max_edges: wire.max_edges,
             role: role(wire.role),
+            resume: name("welcome.resume", wire.resume)?,
         })
     }
 }

@@ -40,6 +40,7 @@ fn welcome() -> Welcome {
         chains: 4,
         max_edges: 9,
         role: Role::Observer,
+        resume: "0a1b".to_owned(),
     }
 }
 
@@ -244,6 +245,8 @@ fn every_viewer_event_survives_the_wire() {
         wanted_role: Role::Driver,
         data_budget: 1 << 20,
         filter: Some(WantedFilter { revision: 1, text: "edges > 1".to_owned() }),
+        focus: true,
+        resume: "0a1b".to_owned(),
     };
     for event in [
         ViewerEvent::Hello(hello),

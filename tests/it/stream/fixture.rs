@@ -15,6 +15,7 @@ use tonic::transport::{Channel, Endpoint};
 use tonic::{Status, Streaming};
 use tracer_server::hub::HubLimits;
 use tracer_server::service::{Security, Server, SessionInfo};
+use tracer_server::steering::Orders;
 
 /// Nothing here takes that long; what does hangs.
 pub(super) const PATIENCE: Duration = Duration::from_secs(30);
@@ -46,6 +47,7 @@ pub(super) fn session_info() -> SessionInfo {
         chains: 2,
         max_edges: 8,
         role: Role::Observer,
+        resume: String::new(),
     };
     SessionInfo { welcome, mesh: strip(60_000, camera), objects: Vec::new() }
 }
@@ -76,8 +78,15 @@ pub(super) fn start(limits: HubLimits) -> Server {
 }
 
 pub(crate) fn start_guarded(limits: HubLimits, security: Security) -> Server {
+    start_steered(limits, security).0
+}
+
+/// A server whose orders arrive at the test.
+pub(crate) fn start_steered(limits: HubLimits, security: Security) -> (Server, Orders) {
     let any_port = "127.0.0.1:0".parse().expect("an address");
-    Server::start(any_port, session_info(), limits, security).expect("a free port")
+    let (steering, orders) = tracer_server::steering::channel();
+    let server = Server::start(any_port, session_info(), limits, steering, security);
+    (server.expect("a free port"), orders)
 }
 
 /// Stops a server off the runtime, which goes on reading meanwhile.
@@ -99,6 +108,8 @@ pub(super) fn hello() -> v1::Hello {
         wanted_role: Role::Observer,
         data_budget: 1 << 30,
         filter: None,
+        focus: false,
+        resume: String::new(),
     })
 }
 
@@ -135,22 +146,23 @@ impl Viewer {
         message.map(|message| TracerEvent::try_from(message).expect("well-formed"))
     }
 
-    /// The next event that is no statistics.
+    /// The next event that is neither statistics nor a notice.
     pub(super) async fn next_data(&mut self) -> Option<TracerEvent> {
         loop {
             match self.next().await {
-                Some(TracerEvent::Statistics(_)) => {}
+                Some(TracerEvent::Statistics(_) | TracerEvent::Notice(_)) => {}
                 event => return event,
             }
         }
     }
 
-    /// Everything up to the end of the snapshot.
+    /// Everything but notices up to the end of the snapshot.
     pub(super) async fn snapshot(&mut self) -> Vec<TracerEvent> {
         let mut events = Vec::new();
         loop {
             match self.next().await.expect("the snapshot has an end") {
                 TracerEvent::SnapshotEnd => return events,
+                TracerEvent::Notice(_) => {}
                 event => events.push(event),
             }
         }

@@ -40,8 +40,9 @@ async fn a_viewer_is_welcomed_and_shown_the_present() {
     let mut viewer = Viewer::join(&server).await.expect("welcome");
     let expected = session_info().welcome;
     assert_ne!(viewer.welcome.session, first.welcome.session, "each session has its number");
-    let session = viewer.welcome.session;
-    assert_eq!(viewer.welcome, Welcome { session, ..expected });
+    let (session, resume) = (viewer.welcome.session, viewer.welcome.resume.clone());
+    assert!(resume.len() >= 32 && resume != first.welcome.resume, "a secret of its own");
+    assert_eq!(viewer.welcome, Welcome { session, resume, ..expected });
 
     let mut rows = vec![None; film.pixels.len()];
     let mut threads = None;

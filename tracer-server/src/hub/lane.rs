@@ -3,20 +3,18 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use common::{FilmTile, FilterReply, Gap, PathBatch, Statistics};
+use common::{FilmTile, FilterReply, FocusPath, FocusStep, Gap, Notice, PathBatch, Statistics};
 use tokio::sync::Notify;
 use tokio::sync::futures::Notified;
 use tokio::time::Instant;
 
 use super::backlog::Backlog;
 use super::budget::Budget;
+use super::film_queue::{FilmQueue, TileOrder};
+use super::focus::{FocusItem, FocusNews, FocusQueue};
 use super::population::Offer;
 use super::{HubLimits, NumberedFilm};
 
-/// A film tile holds whole rows of about this many bytes.
-const TILE_BYTES: usize = 192 << 10;
-/// Bytes of a pixel in a tile.
-const PIXEL_BYTES: usize = 12;
 /// The data lane holds what the budget sends in this many seconds, so that a slow viewer sees the
 /// present and not the past.
 const LANE_SECONDS: f64 = 0.5;
@@ -34,6 +32,16 @@ pub enum Delivery {
     SnapshotEnd,
     /// The answer to a filter.
     FilterReply(FilterReply),
+    /// Who steers, and what.
+    Notice(Notice),
+    /// The explorer's current path.
+    FocusPath(Arc<FocusPath>),
+    /// A step of the explorer.
+    FocusStep(Arc<FocusStep>),
+    /// So many steps of the explorer are missing here.
+    FocusGap(u64),
+    /// Rows of the explorer's film.
+    ExplorerFilm(FilmTile),
     /// A batch, perhaps shared with other viewers.
     Paths(Arc<PathBatch>),
     /// What was dropped since the last gap.
@@ -55,16 +63,10 @@ pub(super) enum Taken {
     Paths,
     /// Rows to send, still to be converted: not under the lane's lock.
     Film(TileOrder),
+    /// Rows of the explorer's film to send, still to be converted.
+    ExplorerFilm(TileOrder),
     /// Nothing until the lane is filled, or until the instant when the budget allows more.
     Later(Option<Instant>),
-}
-
-/// Rows of a snapshot that are due.
-#[derive(Debug)]
-pub(super) struct TileOrder {
-    film: NumberedFilm,
-    first_row: u32,
-    rows: u32,
 }
 
 /// The lanes of one viewer.
@@ -87,8 +89,9 @@ struct LaneState {
     /// Reports a gap even though no batch gets through.
     gap_is_due: bool,
 
-    film: Option<FilmProgress>,
-    newer_film: Option<NumberedFilm>,
+    focus: FocusQueue,
+    film: FilmQueue,
+    explorer_film: FilmQueue,
     /// Whose turn it is when both film and paths wait.
     film_was_last: bool,
 }
@@ -98,6 +101,7 @@ struct LaneState {
 enum Control {
     Statistics(Arc<Statistics>),
     FilterReply(FilterReply),
+    Notice(Notice),
 }
 
 /// How far the viewer is into the session.
@@ -111,13 +115,6 @@ enum Phase {
     Live,
 }
 
-/// A snapshot on its way: rows before `next_row` are sent.
-#[derive(Debug)]
-struct FilmProgress {
-    film: NumberedFilm,
-    next_row: u32,
-}
-
 impl Lane {
     /// Empty lanes of viewer number `session`.
     pub(super) fn new(session: u64, limits: HubLimits, budget: u64, now: Instant) -> Self {
@@ -128,8 +125,9 @@ impl Lane {
             backlog: Backlog::default(),
             budget: Budget::new(or_default(budget, limits), now),
             gap_is_due: false,
-            film: None,
-            newer_film: None,
+            focus: FocusQueue::default(),
+            film: FilmQueue::default(),
+            explorer_film: FilmQueue::default(),
             film_was_last: false,
         };
         Self { session, limits, state: Mutex::new(state), wake: Notify::new() }
@@ -148,13 +146,17 @@ impl Lane {
     /// Lays out the snapshot that a new viewer gets before anything else.
     pub(super) fn begin_snapshot(
         &self,
+        notices: impl Iterator<Item = Notice>,
         statistics: Option<Arc<Statistics>>,
         film: Option<NumberedFilm>,
     ) {
         let mut state = self.state();
+        state.control.extend(notices.map(Control::Notice));
         state.control.extend(statistics.map(Control::Statistics));
-        state.film = film.map(|film| FilmProgress { film, next_row: 0 });
-        state.phase = if state.film.is_some() { Phase::SnapshotFilm } else { Phase::SnapshotEnd };
+        state.phase = if film.is_some() { Phase::SnapshotFilm } else { Phase::SnapshotEnd };
+        if let Some(film) = film {
+            state.film.push(film);
+        }
     }
 
     /// Changes the data budget, in bytes a second.
@@ -181,6 +183,54 @@ impl Lane {
         self.wake.notify_one();
     }
 
+    /// Puts in something of who steers. A state replaces the one before it that is not sent yet.
+    pub(super) fn push_notice(&self, notice: Notice) {
+        let mut state = self.state();
+        if is_state(&notice) {
+            let kind = std::mem::discriminant(&notice);
+            state.control.retain(|control| match control {
+                Control::Notice(old) => std::mem::discriminant(old) != kind,
+                _ => true,
+            });
+        }
+        state.push_control(Control::Notice(notice), self.limits);
+        drop(state);
+        self.wake.notify_one();
+    }
+
+    /// Ends the session from the daemon's side.
+    pub(super) fn dismiss(&self, reason: &str) {
+        self.state().close(reason.to_owned());
+        self.wake.notify_one();
+    }
+
+    /// Opens the focus lane with the explorer's `current` path, or closes it.
+    pub(super) fn set_focus(&self, on: bool, current: Option<Arc<FocusPath>>) {
+        self.state().focus.set(on, current);
+        self.wake.notify_one();
+    }
+
+    /// True when the focus lane is open.
+    pub(super) fn has_focus(&self) -> bool {
+        self.state().focus.is_on()
+    }
+
+    /// Puts in what the explorer did.
+    pub(super) fn push_focus(&self, news: &FocusNews) {
+        self.state().focus.push(news);
+        self.wake.notify_one();
+    }
+
+    /// Puts a snapshot of the explorer's film into the data lane.
+    pub(super) fn push_explorer_film(&self, film: NumberedFilm) {
+        let mut state = self.state();
+        if state.focus.is_on() {
+            state.explorer_film.push(film);
+        }
+        drop(state);
+        self.wake.notify_one();
+    }
+
     /// Puts a batch into the backlog, where the oldest make room for it.
     pub(super) fn push_paths(&self, batch: Arc<PathBatch>) {
         self.state().backlog.push(batch, self.limits.lane_bytes);
@@ -197,7 +247,7 @@ impl Lane {
         let state = self.state();
         let budgeted = state.budget.bytes_per_second() * LANE_SECONDS;
         let limit = (budgeted as usize).max(MIN_LANE_BYTES).min(self.limits.lane_bytes);
-        (state.backlog.byte_len(), limit)
+        (state.backlog.byte_len() + state.focus.byte_len(), limit)
     }
 
     /// Notes what was lost before it reached the lanes.
@@ -207,13 +257,7 @@ impl Lane {
 
     /// Puts a snapshot of the film into the data lane; the newest waits for the one on its way.
     pub(super) fn push_film(&self, film: NumberedFilm) {
-        let mut state = self.state();
-        if state.film.is_none() {
-            state.film = Some(FilmProgress { film, next_row: 0 });
-        } else {
-            state.newer_film = Some(film);
-        }
-        drop(state);
+        self.state().film.push(film);
         self.wake.notify_one();
     }
 
@@ -225,6 +269,11 @@ impl Lane {
     fn state(&self) -> MutexGuard<'_, LaneState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// True for what a newer notice of its kind makes void.
+fn is_state(notice: &Notice) -> bool {
+    matches!(notice, Notice::Presence(_) | Notice::Explorer(_) | Notice::Chains(_))
 }
 
 fn or_default(budget: u64, limits: HubLimits) -> u64 {
@@ -255,13 +304,23 @@ impl LaneState {
             Some(Control::FilterReply(reply)) => {
                 return Taken::Now(Delivery::FilterReply(reply));
             }
+            Some(Control::Notice(notice)) => return Taken::Now(Delivery::Notice(notice)),
             None => {}
+        }
+        if let Some(item) = self.focus.pop() {
+            // Ahead of the other data, but not for free.
+            self.budget.spend(item.byte_len());
+            return Taken::Now(match item {
+                FocusItem::Path(path) => Delivery::FocusPath(path),
+                FocusItem::Step(step) => Delivery::FocusStep(step),
+                FocusItem::Gap(steps) => Delivery::FocusGap(steps),
+            });
         }
         match self.phase {
             // The budget is ignored: a viewer is to have the snapshot within a second.
             Phase::SnapshotFilm => {
-                let rows = self.take_rows();
-                if self.film.as_ref().is_none_or(|film| film.next_row == 0) {
+                let rows = self.film.take_rows();
+                if self.film.is_between() {
                     self.phase = Phase::SnapshotEnd;
                 }
                 rows.map_or(Taken::Later(None), Taken::Film)
@@ -281,14 +340,20 @@ impl LaneState {
             self.gap_is_due = false;
             return Taken::Gap;
         }
-        if wait.is_some() && (self.film.is_some() || offer.batch.is_some()) {
+        let films = self.film.is_waiting() || self.explorer_film.is_waiting();
+        if wait.is_some() && (films || offer.batch.is_some()) {
             return Taken::Later(wait);
         }
         let prefers_paths = self.film_was_last && offer.batch.is_some();
-        if !prefers_paths && let Some(order) = self.take_rows() {
+        if !prefers_paths && let Some(order) = self.film.take_rows() {
             self.film_was_last = true;
             self.budget.spend(order.byte_len());
             return Taken::Film(order);
+        }
+        if !prefers_paths && let Some(order) = self.explorer_film.take_rows() {
+            self.film_was_last = true;
+            self.budget.spend(order.byte_len());
+            return Taken::ExplorerFilm(order);
         }
         match offer.batch {
             Some(bytes) => {
@@ -300,59 +365,13 @@ impl LaneState {
         }
     }
 
-    fn take_rows(&mut self) -> Option<TileOrder> {
-        let progress = self.film.as_mut()?;
-        let frame = &progress.film.frame;
-        let (width, height) = (frame.width as usize, frame.height);
-        let rows = (TILE_BYTES / (PIXEL_BYTES * width.max(1))).max(1) as u32;
-        let first_row = progress.next_row;
-        let rows = rows.min(height - first_row);
-        let order = TileOrder { film: progress.film.clone(), first_row, rows };
-        progress.next_row += rows;
-        if progress.next_row >= height {
-            let next = self.newer_film.take();
-            self.film = next.map(|film| FilmProgress { film, next_row: 0 });
-        }
-        Some(order)
-    }
-
     /// Ends the session, and lets go of what will not be sent any more.
     fn close(&mut self, reason: String) {
         self.closed = Some(reason);
         self.control.clear();
         self.backlog = Backlog::default();
-        self.film = None;
-        self.newer_film = None;
-    }
-}
-
-impl TileOrder {
-    fn byte_len(&self) -> usize {
-        self.rows as usize * self.film.frame.width as usize * PIXEL_BYTES
-    }
-
-    /// The rows as they travel. A pixel that is not finite is sent as black: the picture shows the
-    /// hole, and every other pixel arrives.
-    pub(super) fn tile(&self) -> FilmTile {
-        let frame = &self.film.frame;
-        let width = frame.width as usize;
-        let (skipped, taken) = (self.first_row as usize * width, self.rows as usize * width);
-        let mut rgb: Vec<f32> = frame
-            .pixels
-            .iter()
-            .skip(skipped)
-            .take(taken)
-            .flat_map(|pixel| pixel.to_f32())
-            .map(|channel| if channel.is_finite() { channel } else { 0.0 })
-            .collect();
-        rgb.resize(3 * taken, 0.0);
-        FilmTile {
-            sequence: self.film.sequence,
-            width: frame.width,
-            height: frame.height,
-            first_row: self.first_row,
-            steps: frame.steps,
-            rgb,
-        }
+        self.focus = FocusQueue::default();
+        self.film = FilmQueue::default();
+        self.explorer_film = FilmQueue::default();
     }
 }

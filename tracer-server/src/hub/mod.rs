@@ -9,10 +9,15 @@
 //! What a viewer's filter wants is picked out in the viewer's own task, from the data lane: batches
 //! wait there as they are, shared by all viewers, until the viewer has room for more.
 //!
-//! No lock that a viewer can hold is ever taken by a producer.
+//! The steps of the explorer go to those who ask for them, through a lane that is lossless within its
+//! bound; who steers, and what was changed, goes through the control lane.
+//!
+//! No lock that a viewer can hold is ever taken by a chain.
 
 mod backlog;
 mod budget;
+mod film_queue;
+mod focus;
 mod lane;
 mod population;
 mod pump;
@@ -21,11 +26,15 @@ mod sampler;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use common::{CompiledFilter, FilmFrame, FilterReply, Gap, PathBatch, Statistics};
+use common::{
+    ChainState, CompiledFilter, ExplorerState, FilmFrame, FilterReply, FocusPath, Gap, Notice,
+    OrderReply, PathBatch, Presence, Statistics,
+};
 use thiserror::Error;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, timeout_at};
 
+pub use focus::FocusNews;
 pub use lane::Delivery;
 pub use pump::Pump;
 
@@ -61,8 +70,10 @@ impl Default for HubLimits {
 
 /// Most path batches that wait for the pump, whatever their size.
 const INGRESS_BATCHES: usize = 512;
-/// Most snapshots of film and statistics that wait for the pump.
-const INGRESS_NEWS: usize = 16;
+/// Most snapshots of film and statistics, states and replies that wait for the pump.
+const INGRESS_NEWS: usize = 64;
+/// Most steps of the explorer that wait for the pump.
+const INGRESS_FOCUS: usize = 1024;
 
 /// The refusal of one viewer too many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -78,6 +89,7 @@ pub struct Hub {
     shared: Arc<Shared>,
     paths: mpsc::Sender<PathBatch>,
     news: mpsc::Sender<News>,
+    focus: mpsc::Sender<FocusNews>,
 }
 
 /// What producers and the pump share without locks, and viewers and the pump behind one.
@@ -85,6 +97,7 @@ pub struct Hub {
 struct Shared {
     limits: HubLimits,
     viewers: AtomicUsize,
+    focus_viewers: AtomicUsize,
     waiting_bytes: AtomicUsize,
     lost: Lost,
     /// Never touched by producers.
@@ -104,6 +117,9 @@ struct Lost {
 enum News {
     Film(Arc<FilmFrame>),
     Statistics(Arc<Statistics>),
+    ExplorerFilm(Arc<FilmFrame>),
+    Chains(ChainState),
+    Reply(u64, OrderReply),
 }
 
 /// The viewers, and what a new one is shown at once.
@@ -113,6 +129,11 @@ struct Registry {
     lanes: Vec<Arc<Lane>>,
     film: Option<NumberedFilm>,
     statistics: Option<Arc<Statistics>>,
+    presence: Option<Presence>,
+    chains: Option<ChainState>,
+    explorer: Option<ExplorerState>,
+    explorer_film: Option<NumberedFilm>,
+    focus: Option<Arc<FocusPath>>,
 }
 
 /// A snapshot of the film under its sequence number.
@@ -127,15 +148,17 @@ impl Hub {
     pub fn new(limits: HubLimits) -> (Self, Pump) {
         let (paths, path_queue) = mpsc::channel(INGRESS_BATCHES);
         let (news, news_queue) = mpsc::channel(INGRESS_NEWS);
+        let (focus, focus_queue) = mpsc::channel(INGRESS_FOCUS);
         let shared = Arc::new(Shared {
             limits,
             viewers: AtomicUsize::new(0),
+            focus_viewers: AtomicUsize::new(0),
             waiting_bytes: AtomicUsize::new(0),
             lost: Lost::default(),
             registry: Mutex::default(),
         });
-        let pump = Pump::new(Arc::clone(&shared), path_queue, news_queue);
-        (Self { shared, paths, news }, pump)
+        let pump = Pump::new(Arc::clone(&shared), path_queue, news_queue, focus_queue);
+        (Self { shared, paths, news, focus }, pump)
     }
 
     /// True while anyone would see published paths; producers need not make any otherwise.
@@ -174,6 +197,68 @@ impl Hub {
         self.publish_news(News::Statistics(statistics));
     }
 
+    /// Hands over a snapshot of the explorer's film, for those who watch the explorer. Never waits.
+    pub fn publish_explorer_film(&self, frame: Arc<FilmFrame>) {
+        self.publish_news(News::ExplorerFilm(frame));
+    }
+
+    /// Hands over what the chains are at. Never waits; false where it must be tried again.
+    #[must_use]
+    pub fn publish_chains(&self, state: ChainState) -> bool {
+        self.news.try_send(News::Chains(state)).is_ok()
+    }
+
+    /// Hands over the answer to an order that the viewer of `session` has given. Never waits.
+    pub fn publish_reply(&self, session: u64, reply: OrderReply) {
+        self.publish_news(News::Reply(session, reply));
+    }
+
+    /// True while anyone sees what the explorer does.
+    pub fn wants_focus(&self) -> bool {
+        self.shared.focus_viewers.load(Ordering::Relaxed) > 0
+    }
+
+    /// Hands over a step of the explorer. Nothing is lost on the way to the lanes: where the pump is
+    /// behind, this waits for it, so it is not for the chains.
+    pub fn publish_focus(&self, news: FocusNews) {
+        let full = match self.focus.try_send(news) {
+            Ok(()) | Err(mpsc::error::TrySendError::Closed(_)) => return,
+            Err(mpsc::error::TrySendError::Full(news)) => news,
+        };
+        if self.focus.blocking_send(full).is_err() {
+            tracing::debug!("a step of the explorer came after the end");
+        }
+    }
+
+    /// Tells every viewer, and those who come later. Takes the lock of the viewers' list: not for the
+    /// chains.
+    pub fn announce(&self, notice: &Notice) {
+        let mut registry = self.shared.registry();
+        match notice {
+            Notice::Presence(presence) => registry.presence = Some(presence.clone()),
+            Notice::Chains(state) => registry.chains = Some(state.clone()),
+            Notice::Explorer(state) => registry.explorer = Some(state.clone()),
+            Notice::Lease(_) | Notice::Reply(_) => {}
+        }
+        for lane in &registry.lanes {
+            lane.push_notice(notice.clone());
+        }
+    }
+
+    /// Tells one viewer, if it is still there. Not for the chains.
+    pub fn tell(&self, session: u64, notice: Notice) {
+        if let Some(lane) = self.shared.registry().lane(session) {
+            lane.push_notice(notice);
+        }
+    }
+
+    /// Ends the session of a viewer, if it is still there.
+    pub fn dismiss(&self, session: u64, reason: &str) {
+        if let Some(lane) = self.shared.registry().lane(session) {
+            lane.dismiss(reason);
+        }
+    }
+
     fn publish_news(&self, news: News) {
         // Where the pump is that far behind, a later snapshot will do.
         if self.news.try_send(news).is_err() {
@@ -191,9 +276,10 @@ impl Hub {
         }
         registry.sessions += 1;
         let lane = Arc::new(Lane::new(registry.sessions, limits, budget, Instant::now()));
-        lane.begin_snapshot(registry.statistics.clone(), registry.film.clone());
+        let notices = registry.notices();
+        lane.begin_snapshot(notices, registry.statistics.clone(), registry.film.clone());
         registry.lanes.push(Arc::clone(&lane));
-        self.shared.viewers.store(registry.lanes.len(), Ordering::Relaxed);
+        self.shared.count(&registry);
         drop(registry);
         let population = Mutex::new(Population::new(lane.session()));
         Ok(Subscription { shared: Arc::clone(&self.shared), lane, population })
@@ -203,6 +289,27 @@ impl Hub {
 impl Shared {
     fn registry(&self) -> MutexGuard<'_, Registry> {
         self.registry.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Brings up to date what producers know of the viewers.
+    fn count(&self, registry: &Registry) {
+        let focus = registry.lanes.iter().filter(|lane| lane.has_focus()).count();
+        self.viewers.store(registry.lanes.len(), Ordering::Relaxed);
+        self.focus_viewers.store(focus, Ordering::Relaxed);
+    }
+}
+
+impl Registry {
+    fn lane(&self, session: u64) -> Option<&Arc<Lane>> {
+        self.lanes.iter().find(|lane| lane.session() == session)
+    }
+
+    /// What a new viewer must hear of those who steer.
+    fn notices(&self) -> impl Iterator<Item = Notice> {
+        let presence = self.presence.clone().map(Notice::Presence);
+        let chains = self.chains.clone().map(Notice::Chains);
+        let explorer = self.explorer.clone().map(Notice::Explorer);
+        [presence, chains, explorer].into_iter().flatten()
     }
 }
 
@@ -240,6 +347,21 @@ impl Subscription {
     /// Changes the data budget, in bytes a second; 0 for the default.
     pub fn set_budget(&self, budget: u64) {
         self.lane.set_budget(budget, Instant::now());
+    }
+
+    /// Opens the focus lane, which begins with the explorer's current path, or closes it.
+    pub fn set_focus(&self, on: bool) {
+        let registry = self.shared.registry();
+        self.lane.set_focus(on, registry.focus.clone());
+        if let Some(film) = registry.explorer_film.clone().filter(|_| on) {
+            self.lane.push_explorer_film(film);
+        }
+        self.shared.count(&registry);
+    }
+
+    /// Tells this viewer.
+    pub fn notice(&self, notice: Notice) {
+        self.lane.push_notice(notice);
     }
 
     /// Puts a filter into force, for all paths that are looked at from now on, and replies to it. Each
@@ -294,6 +416,7 @@ impl Subscription {
         match self.lane.take(viewers, population.offer(), now) {
             Taken::Now(delivery) => Ok(delivery),
             Taken::Film(order) => Ok(Delivery::Film(order.tile())),
+            Taken::ExplorerFilm(order) => Ok(Delivery::ExplorerFilm(order.tile())),
             Taken::Statistics(statistics) => {
                 let (paths_sent, paths_dropped) = population.traffic();
                 let (backlog, _) = self.lane.backlog();
@@ -322,7 +445,7 @@ impl Drop for Subscription {
     fn drop(&mut self) {
         let mut registry = self.shared.registry();
         registry.lanes.retain(|lane| !Arc::ptr_eq(lane, &self.lane));
-        self.shared.viewers.store(registry.lanes.len(), Ordering::Relaxed);
+        self.shared.count(&registry);
     }
 }
 

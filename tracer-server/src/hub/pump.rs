@@ -4,12 +4,12 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use common::{Gap, PathBatch};
+use common::{FilmFrame, Gap, Notice, PathBatch};
 use tokio::sync::mpsc;
 use tokio::time::{MissedTickBehavior, interval};
 use tokio_util::sync::CancellationToken;
 
-use super::{News, NumberedFilm, Shared};
+use super::{FocusNews, News, NumberedFilm, Shared};
 
 /// Statistics go to every viewer this often.
 const STATISTICS_PERIOD: Duration = Duration::from_millis(500);
@@ -20,6 +20,7 @@ pub struct Pump {
     shared: Arc<Shared>,
     paths: mpsc::Receiver<PathBatch>,
     news: mpsc::Receiver<News>,
+    focus: mpsc::Receiver<FocusNews>,
     path_sequence: u64,
     film_sequence: u64,
 }
@@ -29,8 +30,9 @@ impl Pump {
         shared: Arc<Shared>,
         paths: mpsc::Receiver<PathBatch>,
         news: mpsc::Receiver<News>,
+        focus: mpsc::Receiver<FocusNews>,
     ) -> Self {
-        Self { shared, paths, news, path_sequence: 0, film_sequence: 0 }
+        Self { shared, paths, news, focus, path_sequence: 0, film_sequence: 0 }
     }
 
     /// Runs until `shutdown`, or until every handle of the hub is gone.
@@ -43,6 +45,7 @@ impl Pump {
                 () = shutdown.cancelled() => break,
                 _ = tick.tick() => self.tick(),
                 Some(news) = self.news.recv() => self.accept(news),
+                Some(news) = self.focus.recv() => self.follow(&news),
                 Some(batch) = self.paths.recv() => self.distribute(batch),
                 else => break,
             }
@@ -58,19 +61,53 @@ impl Pump {
     }
 
     fn accept(&mut self, news: News) {
-        let mut registry = self.shared.registry();
         match news {
-            News::Statistics(statistics) => registry.statistics = Some(statistics),
-            News::Film(frame) if frame.pixels.is_empty() => {}
+            News::Statistics(statistics) => {
+                self.shared.registry().statistics = Some(statistics);
+            }
+            News::Film(frame) | News::ExplorerFilm(frame) if frame.pixels.is_empty() => {}
             News::Film(frame) => {
-                self.film_sequence += 1;
-                let film = NumberedFilm { sequence: self.film_sequence, frame };
+                let film = self.number(frame);
+                let mut registry = self.shared.registry();
                 for lane in &registry.lanes {
                     lane.push_film(film.clone());
                 }
                 registry.film = Some(film);
             }
+            News::ExplorerFilm(frame) => {
+                let film = self.number(frame);
+                let mut registry = self.shared.registry();
+                for lane in &registry.lanes {
+                    lane.push_explorer_film(film.clone());
+                }
+                registry.explorer_film = Some(film);
+            }
+            News::Chains(state) => {
+                let mut registry = self.shared.registry();
+                for lane in &registry.lanes {
+                    lane.push_notice(Notice::Chains(state.clone()));
+                }
+                registry.chains = Some(state);
+            }
+            News::Reply(session, reply) => {
+                if let Some(lane) = self.shared.registry().lane(session) {
+                    lane.push_notice(Notice::Reply(reply));
+                }
+            }
         }
+    }
+
+    fn number(&mut self, frame: Arc<FilmFrame>) -> NumberedFilm {
+        self.film_sequence += 1;
+        NumberedFilm { sequence: self.film_sequence, frame }
+    }
+
+    fn follow(&self, news: &FocusNews) {
+        let mut registry = self.shared.registry();
+        for lane in &registry.lanes {
+            lane.push_focus(news);
+        }
+        registry.focus = Some(Arc::clone(&news.after));
     }
 
     fn distribute(&mut self, batch: PathBatch) {

@@ -65,22 +65,27 @@ impl Access {
     }
 }
 
+/// The most that the bearer of a request's token may become.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Allowed(pub(super) Role);
+
 impl Interceptor for Access {
-    fn call(&mut self, request: Request<()>) -> Result<Request<()>, Status> {
+    fn call(&mut self, mut request: Request<()>) -> Result<Request<()>, Status> {
         let entry = request.metadata().get("authorization").map(|value| value.to_str());
         let presented = entry.and_then(|text| text.ok()?.strip_prefix(SCHEME));
-        if self.role(presented).is_none() {
+        let Some(role) = self.role(presented) else {
+            let what = if presented.is_some() { "a wrong token" } else { "no token" };
             let peer = request
                 .remote_addr()
                 .map_or_else(|| "somebody".to_owned(), |address| address.to_string());
-            let what = if presented.is_some() { "a wrong token" } else { "no token" };
             tracing::warn!(peer, "refused: {what}");
             let message = format!(
                 "{what}: this daemon asks for one; start the viewer with --token-file FILE, where \
                  FILE holds the token that the daemon's owner gave you"
             );
             return Err(Status::unauthenticated(message));
-        }
+        };
+        request.extensions_mut().insert(Allowed(role));
         Ok(request)
     }
 }

@@ -6,6 +6,7 @@
 mod access;
 mod connections;
 mod outbound;
+mod room;
 mod scene;
 mod server;
 mod session;
@@ -31,8 +32,11 @@ pub use server::{Server, StartError};
 pub use tls::{Certificate, CertificateError};
 
 use crate::hub::{Hub, Pump};
+use crate::steering::Steering;
+use access::Allowed;
 use outbound::Outbound;
-use session::Session;
+use room::Room;
+use session::{House, Session};
 
 /// Viewers send small messages only.
 const MAX_REQUEST_BYTES: usize = 64 << 10;
@@ -106,7 +110,7 @@ pub enum ServeError {
 pub async fn serve(
     listener: TcpListener,
     (hub, pump): (Hub, Pump),
-    (info, security): (Arc<SessionInfo>, Security),
+    (info, steering, security): (Arc<SessionInfo>, Steering, Security),
     shutdown: CancellationToken,
 ) -> Result<(), ServeError> {
     let tasks = TaskTracker::new();
@@ -120,7 +124,8 @@ pub async fn serve(
         .build_v1()?;
     let filter_scene = Arc::new(info.filter_scene());
     let (task_list, token) = (tasks.clone(), shutdown.clone());
-    let service = TracerService { hub, info, filter_scene, tasks: task_list, shutdown: token };
+    let house = Arc::new(House { filter_scene, steering, room: Room::new(hub.clone()) });
+    let service = TracerService { hub, info, house, tasks: task_list, shutdown: token };
     let tracer = TracerServer::new(service)
         .max_decoding_message_size(MAX_REQUEST_BYTES)
         .max_encoding_message_size(MAX_MESSAGE_BYTES);
@@ -160,7 +165,7 @@ pub async fn serve(
 struct TracerService {
     hub: Hub,
     info: Arc<SessionInfo>,
-    filter_scene: Arc<FilterScene>,
+    house: Arc<House>,
     tasks: TaskTracker,
     shutdown: CancellationToken,
 }
@@ -177,29 +182,29 @@ impl Tracer for TracerService {
         &self,
         request: Request<Streaming<v1::ViewerMessage>>,
     ) -> Result<Response<Outbound>, Status> {
+        // Who came past the door without the interceptor may watch.
+        let allowed = request.extensions().get().map_or(Role::Observer, |&Allowed(role)| role);
         let mut inbound = request.into_inner();
         let hello = tokio::select! {
             hello = session::handshake(&mut inbound) => hello?,
             () = self.shutdown.cancelled() => return Err(Status::unavailable(SHUTTING_DOWN)),
         };
-        let filter = session::first_filter(&hello, &self.filter_scene)?;
+        session::check_filter(&hello, &self.house.filter_scene)?;
         let subscription = self
             .hub
             .subscribe(hello.data_budget)
             .map_err(|full| Status::resource_exhausted(full.to_string()))?;
-        if let Some((revision, filter)) = filter {
-            subscription.set_filter(revision, filter);
-        }
-        // Steering needs a lease that this version does not give away yet.
+        let (sender, outbound) = outbound::channel();
+        let house = Arc::clone(&self.house);
+        let (session, entry) = Session::enter(hello, subscription, house, allowed);
         let welcome = Welcome {
-            session: subscription.session(),
-            role: Role::Observer,
+            session: session.number(),
+            role: entry.role,
+            resume: entry.resume,
             ..self.info.welcome.clone()
         };
-        let (sender, outbound) = outbound::channel();
-        let filter_scene = Arc::clone(&self.filter_scene);
-        let session = Session::new(hello, subscription, filter_scene, self.shutdown.clone());
-        self.tasks.spawn(session.run(welcome, inbound, sender));
+        let shutdown = self.shutdown.clone();
+        self.tasks.spawn(session.run(welcome, inbound, sender, shutdown));
         Ok(Response::new(outbound))
     }
 

@@ -13,6 +13,7 @@ use tokio_util::sync::CancellationToken;
 
 use super::{Security, SessionInfo, serve};
 use crate::hub::{Hub, HubLimits};
+use crate::steering::Steering;
 
 /// Threads of the runtime; the cores belong to the chains.
 const RUNTIME_THREADS: usize = 2;
@@ -46,12 +47,14 @@ pub struct Server {
 }
 
 impl Server {
-    /// Listens on `address` (port 0 for any that is free) and serves viewers what the hub gets.
+    /// Listens on `address` (port 0 for any that is free), serves viewers what the hub gets, and hands
+    /// on what the driver orders.
     /// May be called from a program that has a runtime of its own.
     pub fn start(
         address: SocketAddr,
         info: SessionInfo,
         limits: HubLimits,
+        steering: Steering,
         security: Security,
     ) -> Result<Self, StartError> {
         let listen = |source| StartError::Listen { address, source };
@@ -71,8 +74,8 @@ impl Server {
 
         let (hub, pump) = Hub::new(limits);
         let (shutdown, ended) = (CancellationToken::new(), CancellationToken::new());
-        let service =
-            serve(listener, (hub.clone(), pump), (Arc::new(info), security), shutdown.clone());
+        let offer = (Arc::new(info), steering, security);
+        let service = serve(listener, (hub.clone(), pump), offer, shutdown.clone());
         let ends = ended.clone().drop_guard();
         let run = move || {
             let _ends = ends;

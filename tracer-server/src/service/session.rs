@@ -2,17 +2,22 @@
 
 use std::sync::Arc;
 
-use common::{CompiledFilter, Filter, FilterError, FilterReply, FilterScene, Welcome};
+use common::{
+    CompiledFilter, Filter, FilterError, FilterReply, FilterScene, Notice, Order, OrderReply, Role,
+    Welcome,
+};
 use proto::v1::{self, TracerMessage, ViewerMessage, tracer_message::Kind};
-use proto::{Hello, TracerEvent, ViewerEvent, WantedFilter, WireError};
+use proto::{Hello, NumberedOrder, TracerEvent, ViewerEvent, WantedFilter, WireError};
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep_until};
 use tokio_util::sync::CancellationToken;
 use tonic::{Status, Streaming};
 
 use super::outbound::Sender;
+use super::room::{Entry, Room};
 use super::{FILTER_INTERVAL, HELLO_TIMEOUT, SHUTTING_DOWN};
 use crate::hub::{Delivery, Subscription};
+use crate::steering::{Envelope, Steering};
 
 /// Waits for the hello, which must come first and soon.
 pub(super) async fn handshake(inbound: &mut Streaming<ViewerMessage>) -> Result<Hello, Status> {
@@ -30,18 +35,12 @@ pub(super) async fn handshake(inbound: &mut Streaming<ViewerMessage>) -> Result<
     }
 }
 
-/// The filter that a viewer asks for in its hello, with its number.
-pub(super) fn first_filter(
-    hello: &Hello,
-    scene: &FilterScene,
-) -> Result<Option<(u32, Arc<CompiledFilter>)>, Status> {
-    let Some(WantedFilter { revision, text }) = &hello.filter else { return Ok(None) };
-    match understand(text, scene) {
-        Ok(filter) => Ok(Some((*revision, Arc::new(filter)))),
-        Err(error) => {
-            Err(Status::invalid_argument(format!("the filter:\n{}", error.pointed(text))))
-        }
-    }
+/// Refuses a viewer whose hello asks for a filter that makes no sense.
+pub(super) fn check_filter(hello: &Hello, scene: &FilterScene) -> Result<(), Status> {
+    let Some(WantedFilter { text, .. }) = &hello.filter else { return Ok(()) };
+    understand(text, scene)
+        .map(drop)
+        .map_err(|error| Status::invalid_argument(format!("the filter:\n{}", error.pointed(text))))
 }
 
 fn understand(text: &str, scene: &FilterScene) -> Result<CompiledFilter, FilterError> {
@@ -85,24 +84,54 @@ enum Heard {
     Over(End),
 }
 
-/// One viewer's conversation.
+/// What all sessions share.
+#[derive(Debug)]
+pub(super) struct House {
+    /// What filters may name.
+    pub(super) filter_scene: Arc<FilterScene>,
+    /// Where orders go.
+    pub(super) steering: Steering,
+    /// Who is there.
+    pub(super) room: Room,
+}
+
+/// One viewer's conversation; ending it leaves the room.
 #[derive(Debug)]
 pub(super) struct Session {
     hello: Hello,
     subscription: Subscription,
-    filter_scene: Arc<FilterScene>,
-    shutdown: CancellationToken,
+    house: Arc<House>,
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        self.house.room.leave(self.number());
+    }
 }
 
 impl Session {
-    /// The session of a viewer that said hello.
-    pub(super) fn new(
+    /// The session of a viewer that said hello and may become at most `allowed`; what it asked for, or
+    /// comes back to, is in force.
+    pub(super) fn enter(
         hello: Hello,
         subscription: Subscription,
-        filter_scene: Arc<FilterScene>,
-        shutdown: CancellationToken,
-    ) -> Self {
-        Self { hello, subscription, filter_scene, shutdown }
+        house: Arc<House>,
+        allowed: Role,
+    ) -> (Self, Entry) {
+        let entry = house.room.enter(subscription.session(), &hello, allowed);
+        let session = Self { hello, subscription, house };
+        if let Some(filter) = session.hello.filter.clone().or_else(|| entry.filter.clone()) {
+            session.set_filter(filter);
+        }
+        if entry.focus {
+            session.set_focus(true);
+        }
+        (session, entry)
+    }
+
+    /// Its number.
+    pub(super) fn number(&self) -> u64 {
+        self.subscription.session()
     }
 
     /// Talks to the viewer until one of them leaves.
@@ -111,11 +140,16 @@ impl Session {
         welcome: Welcome,
         inbound: Streaming<ViewerMessage>,
         sender: Sender,
+        shutdown: CancellationToken,
     ) {
-        let (session, viewer) = (self.subscription.session(), self.hello.viewer_name.clone());
+        let (session, viewer) = (self.number(), self.hello.viewer_name.clone());
         tracing::info!(session, viewer, "a viewer came");
         let Sender { messages, last } = sender;
-        let end = self.converse(welcome, inbound, &messages).await;
+        let end = tokio::select! {
+            biased;
+            () = shutdown.cancelled() => End::Dismissed(SHUTTING_DOWN.to_owned()),
+            end = self.converse(welcome, inbound, &messages) => end,
+        };
         drop(messages);
         let word = match end {
             End::Left(reason) => {
@@ -156,7 +190,6 @@ impl Session {
             };
             tokio::select! {
                 biased;
-                () = self.shutdown.cancelled() => return End::Dismissed(SHUTTING_DOWN.to_owned()),
                 () = messages.closed() => return End::Left("it hung up".to_owned()),
                 message = next_message, if listens => match self.hear(message) {
                     Heard::Fine => {}
@@ -184,6 +217,18 @@ impl Session {
                 self.set_filter(wanted);
                 Heard::Work
             }
+            Ok(ViewerEvent::SetFocus(on)) => {
+                self.set_focus(on);
+                Heard::Work
+            }
+            Ok(ViewerEvent::Order(order)) => {
+                self.order(order);
+                Heard::Work
+            }
+            Ok(ViewerEvent::Appearance(appearance)) => {
+                self.house.room.show(self.number(), appearance);
+                Heard::Work
+            }
             Ok(ViewerEvent::Unknown) => Heard::Fine,
             Ok(ViewerEvent::Goodbye(reason)) => {
                 let reason = reason.chars().filter(|c| !c.is_control()).collect();
@@ -197,10 +242,50 @@ impl Session {
         }
     }
 
+    fn set_focus(&self, on: bool) {
+        self.house.room.keep_focus(self.number(), on);
+        self.subscription.set_focus(on);
+        self.house.steering.wake_explorer();
+    }
+
+    /// Hands an order on. Those who carry it out reply; where it does not get that far, this does.
+    fn order(&self, NumberedOrder { request, order }: NumberedOrder) {
+        let done = match order {
+            Some(Order::Lease(wish)) => {
+                let reply = self.house.room.lease(self.number(), wish);
+                self.reply(request, reply.err());
+                return;
+            }
+            Some(order) => self.hand_on(request, order),
+            None => Err("this daemon does not know such an order; it may be older".to_owned()),
+        };
+        if let Err(error) = done {
+            self.reply(request, Some(error));
+        }
+    }
+
+    fn hand_on(&self, request: u32, order: Order) -> Result<(), String> {
+        let author = self.house.room.driver(self.number())?;
+        let steering = &self.house.steering;
+        let handed = match order {
+            Order::Explorer(command) => steering.explore(Envelope { author, request, command }),
+            Order::Chains(command) => steering.change(Envelope { author, request, command }),
+            Order::Lease(_) => Ok(()),
+        };
+        handed.map_err(|error| error.to_string())
+    }
+
+    fn reply(&self, request: u32, error: Option<String>) {
+        self.subscription.notice(Notice::Reply(OrderReply { request, error }));
+    }
+
     fn set_filter(&self, wanted: WantedFilter) {
         let WantedFilter { revision, text } = wanted;
-        match understand(&text, &self.filter_scene) {
-            Ok(filter) => self.subscription.set_filter(revision, Arc::new(filter)),
+        match understand(&text, &self.house.filter_scene) {
+            Ok(filter) => {
+                self.house.room.keep_filter(self.number(), WantedFilter { revision, text });
+                self.subscription.set_filter(revision, Arc::new(filter));
+            }
             Err(error) => {
                 let error = Some(error);
                 self.subscription.reply(FilterReply { revision, error, ..FilterReply::default() });
@@ -221,6 +306,11 @@ impl Session {
             Delivery::Statistics(statistics) => Kind::Statistics((&statistics).into()),
             Delivery::Gap(gap) => Kind::Gap(gap.into()),
             Delivery::FilterReply(reply) => Kind::FilterReply((&reply).into()),
+            Delivery::Notice(notice) => (&notice).into(),
+            Delivery::FocusPath(path) => Kind::FocusPath((&*path).into()),
+            Delivery::FocusStep(step) => Kind::FocusStep((&*step).into()),
+            Delivery::FocusGap(steps) => Kind::FocusGap(v1::FocusGap { steps }),
+            Delivery::ExplorerFilm(tile) => Kind::ExplorerFilm((&tile).into()),
             Delivery::SnapshotEnd => Kind::SnapshotEnd(v1::SnapshotEnd {}),
         };
         room.send(TracerMessage { kind: Some(kind) });

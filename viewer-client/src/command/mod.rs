@@ -9,6 +9,7 @@ mod cloud;
 mod image;
 mod layout;
 mod scene;
+mod steer;
 mod words;
 
 pub use camera::{CameraCommand, Side};
@@ -21,6 +22,7 @@ pub use words::{CommandError, Switch};
 use std::fmt;
 use std::str::FromStr;
 
+use common::Order;
 use words::Words;
 
 /// One action.
@@ -36,6 +38,8 @@ pub enum Command {
     Image(ImageCommand),
     /// Concerns the window's panels.
     Layout(LayoutCommand),
+    /// Steers explorer and chains, or concerns who may.
+    Order(Order),
     /// Tries to connect at once rather than when the next attempt is due.
     Reconnect,
     /// Closes the viewer.
@@ -52,10 +56,18 @@ const OWN_FORMS: [Form; 2] = [
 
 /// Every text form, for help and documentation.
 pub fn forms() -> impl Iterator<Item = Form> {
-    [camera::FORMS, cloud::FORMS, scene::FORMS, image::FORMS, layout::FORMS, &OWN_FORMS]
-        .into_iter()
-        .flatten()
-        .copied()
+    [
+        camera::FORMS,
+        cloud::FORMS,
+        scene::FORMS,
+        image::FORMS,
+        layout::FORMS,
+        steer::FORMS,
+        &OWN_FORMS,
+    ]
+    .into_iter()
+    .flatten()
+    .copied()
 }
 
 impl fmt::Display for Command {
@@ -66,6 +78,7 @@ impl fmt::Display for Command {
             Self::Scene(command) => write!(f, "scene {command}"),
             Self::Image(command) => write!(f, "image {command}"),
             Self::Layout(command) => write!(f, "{command}"),
+            Self::Order(order) => write!(f, "{}", steer::Text(*order)),
             Self::Reconnect => write!(f, "reconnect"),
             Self::Quit => write!(f, "quit"),
         }
@@ -82,6 +95,9 @@ impl FromStr for Command {
             "cloud" => Self::Cloud(cloud::parse(&mut words)?),
             "scene" => Self::Scene(scene::parse(&mut words)?),
             "image" => Self::Image(image::parse(&mut words)?),
+            group @ ("explorer" | "chains" | "lease") => {
+                Self::Order(steer::parse(group, &mut words)?)
+            }
             "reconnect" => Self::Reconnect,
             "quit" => Self::Quit,
             word => Self::Layout(layout::parse(word, &mut words)?),
@@ -106,6 +122,10 @@ mod tests {
         scene grid toggle\nscene clip -x\nscene cut 0.25\n\
         image exposure -1.5\nimage auto\nimage zoom 2\nimage fit\n\
         panel statistics off\ntheme light\nhelp toggle\n\
+        explorer seed 3.0.1024\nexplorer play 2.5\nexplorer pause\nexplorer step 10\n\
+        explorer skip accepted\nexplorer allow 0,2,5\nexplorer fan 2 100\nchains pause\n\
+        chains resume\nchains weight 1 0.25\nchains precision 0.001\nchains restart 7\n\
+        lease ask\nlease release\nlease give 12\n\
         reconnect\nquit";
 
     #[test]
@@ -134,7 +154,8 @@ mod tests {
         let texts = texts.chain(Shading::ALL.iter().map(|s| format!("scene shading {s}")));
         let texts = texts.chain(PanelName::ALL.iter().map(|p| format!("panel {p} toggle")));
         let texts = texts.chain(["theme dark".into(), "theme light".into(), "theme toggle".into()]);
-        for text in texts {
+        let orders = ["explorer seed newest", "explorer skip 3", "explorer allow all"];
+        for text in texts.chain(orders.map(str::to_owned)) {
             let command = Command::from_str(&text).expect(&text);
             assert_eq!(command.to_string(), text, "text of {command:?}");
         }
@@ -149,6 +170,9 @@ mod tests {
         assert!(complaint("cloud width thin").contains("`thin` is not a number"), "names the word");
         assert!(complaint("cloud width NaN").contains("`NaN` is not a number"), "no NaN");
         assert!(complaint("cloud width 900").contains("between 0.25 and 20"), "names the limits");
+        assert!(complaint("chains weight 1 inf").contains("`inf` is not"), "no infinity");
+        assert!(complaint("explorer seed 3.4").contains("CHAIN.EPOCH.STEP"), "shows the form");
+        assert!(complaint("explorer allow 1,64").contains("numbers"), "no such strategy");
         assert!(complaint("scene grid maybe").contains("on, off, toggle"), "lists the choices");
         assert!(complaint("quit now").contains("`now` is too much"), "names the rest");
     }

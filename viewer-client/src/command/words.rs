@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::ops::RangeInclusive;
-use std::str::SplitWhitespace;
+use std::str::{FromStr, SplitWhitespace};
 
 use thiserror::Error;
 
@@ -113,19 +113,7 @@ impl<'a> Words<'a> {
         parameter: &'static str,
         range: RangeInclusive<f32>,
     ) -> Result<f32, CommandError> {
-        let word = self.rest.next().ok_or(CommandError::MissingParameter(parameter))?;
-        let not_a_number = || CommandError::NotANumber { parameter, found: word.to_owned() };
-        let value: f32 =
-            word.parse().ok().filter(|v: &f32| v.is_finite()).ok_or_else(not_a_number)?;
-        if range.contains(&value) {
-            return Ok(value);
-        }
-        Err(CommandError::OutOfRange {
-            parameter,
-            found: word.to_owned(),
-            low: range.start().to_string(),
-            high: range.end().to_string(),
-        })
+        self.within(parameter, range)
     }
 
     /// A whole number within `range`.
@@ -134,9 +122,19 @@ impl<'a> Words<'a> {
         parameter: &'static str,
         range: RangeInclusive<u32>,
     ) -> Result<u32, CommandError> {
+        self.within(parameter, range)
+    }
+
+    /// A number within `range`; NaN and infinities are none.
+    pub(super) fn within<T: PartialOrd + FromStr + fmt::Display>(
+        &mut self,
+        parameter: &'static str,
+        range: RangeInclusive<T>,
+    ) -> Result<T, CommandError> {
         let word = self.rest.next().ok_or(CommandError::MissingParameter(parameter))?;
-        let not_a_number = |_| CommandError::NotANumber { parameter, found: word.to_owned() };
-        let value: u32 = word.parse().map_err(not_a_number)?;
+        let not_a_number = || CommandError::NotANumber { parameter, found: word.to_owned() };
+        let is_finite = word.parse::<f64>().is_ok_and(f64::is_finite);
+        let value: T = word.parse().ok().filter(|_| is_finite).ok_or_else(not_a_number)?;
         if range.contains(&value) {
             return Ok(value);
         }

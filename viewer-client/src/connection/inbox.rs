@@ -6,7 +6,9 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Mutex, PoisonError};
 
-use common::{FilmTile, Gap, PathBatch, Statistics, Welcome};
+use common::{
+    FilmTile, FilterReply, FocusPath, FocusStep, Gap, Notice, PathBatch, Statistics, Welcome,
+};
 use proto::{ReceivedScene, TracerEvent};
 
 use crate::status::LinkState;
@@ -15,6 +17,22 @@ use crate::status::LinkState;
 const BATCH_BYTES: usize = 16 << 20;
 /// Bytes of film tiles that may wait: a film of eight megapixels.
 const FILM_BYTES: usize = 96 << 20;
+
+/// Bytes of the explorer's steps that may wait.
+const FOCUS_BYTES: usize = 8 << 20;
+/// Notices that may wait.
+const NOTICES: usize = 256;
+
+/// What comes in the focus lane, in its order.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FocusNews {
+    /// The explorer's current path.
+    Path(FocusPath),
+    /// A step.
+    Step(FocusStep),
+    /// So many steps are missing here.
+    Gap(u64),
+}
 
 /// Everything that waits.
 #[derive(Debug, Default)]
@@ -35,6 +53,16 @@ pub struct Delivery {
     pub gap: Gap,
     /// How often something was lost.
     pub gaps: u64,
+    /// The explorer's steps.
+    pub focus: VecDeque<FocusNews>,
+    /// Bytes that `focus` takes, about.
+    pub focus_bytes: usize,
+    /// The newest rows of the explorer's film for each first row.
+    pub explorer_film: BTreeMap<u32, FilmTile>,
+    /// Who steers, and what.
+    pub notices: VecDeque<Notice>,
+    /// The answer to the newest filter.
+    pub filter: Option<FilterReply>,
 }
 
 impl Delivery {
@@ -46,6 +74,10 @@ impl Delivery {
             && self.batches.is_empty()
             && self.film.is_empty()
             && self.gaps == 0
+            && self.focus.is_empty()
+            && self.explorer_film.is_empty()
+            && self.notices.is_empty()
+            && self.filter.is_none()
     }
 
     fn push(&mut self, event: TracerEvent) {
@@ -56,13 +88,16 @@ impl Delivery {
                 *self = Self { state, welcome: Some(welcome), ..Self::default() };
             }
             TracerEvent::Paths(batch) => self.push_batch(batch),
-            TracerEvent::Film(tile) => self.push_tile(tile),
+            TracerEvent::Film(tile) => push_tile(&mut self.film, tile),
+            TracerEvent::ExplorerFilm(tile) => push_tile(&mut self.explorer_film, tile),
             TracerEvent::Statistics(statistics) => self.statistics = Some(statistics),
             TracerEvent::Gap(gap) => self.lose(gap),
-            TracerEvent::FilterReply(_)
-            | TracerEvent::SnapshotEnd
-            | TracerEvent::Goodbye(_)
-            | TracerEvent::Unknown => {}
+            TracerEvent::FilterReply(reply) => self.filter = Some(reply),
+            TracerEvent::FocusPath(path) => self.push_focus(FocusNews::Path(path)),
+            TracerEvent::FocusStep(step) => self.push_focus(FocusNews::Step(step)),
+            TracerEvent::FocusGap(steps) => self.push_focus(FocusNews::Gap(steps)),
+            TracerEvent::Notice(notice) => self.push_notice(notice),
+            TracerEvent::SnapshotEnd | TracerEvent::Goodbye(_) | TracerEvent::Unknown => {}
         }
     }
 
@@ -80,14 +115,39 @@ impl Delivery {
         }
     }
 
-    fn push_tile(&mut self, tile: FilmTile) {
-        let bytes = |tile: &FilmTile| tile.rgb.len() * size_of::<f32>();
-        let held: usize = self.film.values().map(bytes).sum();
-        let other_size = |t: &FilmTile| (t.width, t.height) != (tile.width, tile.height);
-        if held + bytes(&tile) > FILM_BYTES || self.film.values().any(other_size) {
-            self.film.clear();
+    /// Puts in a step. Where too many wait, all of them make room, and the next path begins anew.
+    fn push_focus(&mut self, news: FocusNews) {
+        if self.focus_bytes > FOCUS_BYTES {
+            let lost = |news: &FocusNews| match news {
+                FocusNews::Path(_) => 0,
+                FocusNews::Step(_) => 1,
+                FocusNews::Gap(steps) => *steps,
+            };
+            let steps = self.focus.iter().map(lost).fold(0, u64::saturating_add);
+            // The path after the lost steps is made of the last one that is known and what follows
+            // it; the steps after a gap need it.
+            let path = replay(&self.focus);
+            self.focus = VecDeque::from([FocusNews::Gap(steps)]);
+            self.focus.extend(path.map(FocusNews::Path));
+            self.focus_bytes = self.focus.iter().map(size).sum();
         }
-        self.film.insert(tile.first_row, tile);
+        self.focus_bytes += size(&news);
+        self.focus.push_back(news);
+    }
+
+    /// Puts in a notice. A state replaces the one before it that nobody has looked at.
+    fn push_notice(&mut self, notice: Notice) {
+        let is_state = |notice: &Notice| !matches!(notice, Notice::Lease(_) | Notice::Reply(_));
+        if is_state(&notice) {
+            let same = |old: &Notice| {
+                std::mem::discriminant(old) == std::mem::discriminant(&notice) && is_state(old)
+            };
+            self.notices.retain(|old| !same(old));
+        }
+        if self.notices.len() >= NOTICES {
+            self.notices.pop_front();
+        }
+        self.notices.push_back(notice);
     }
 
     fn lose(&mut self, gap: Gap) {
@@ -95,6 +155,34 @@ impl Delivery {
         self.gap.batches = self.gap.batches.saturating_add(gap.batches);
         self.gap.paths = self.gap.paths.saturating_add(gap.paths);
         self.gap.bytes = self.gap.bytes.saturating_add(gap.bytes);
+    }
+}
+
+/// The newest tile for each first row.
+fn push_tile(film: &mut BTreeMap<u32, FilmTile>, tile: FilmTile) {
+    let bytes = |tile: &FilmTile| tile.rgb.len() * size_of::<f32>();
+    let held: usize = film.values().map(bytes).sum();
+    let other_size = |t: &FilmTile| (t.width, t.height) != (tile.width, tile.height);
+    if held + bytes(&tile) > FILM_BYTES || film.values().any(other_size) {
+        film.clear();
+    }
+    film.insert(tile.first_row, tile);
+}
+
+/// The explorer's current path at the end of its news; `None` where that is not known.
+fn replay(news: &VecDeque<FocusNews>) -> Option<FocusPath> {
+    news.iter().fold(None, |path: Option<FocusPath>, news| match news {
+        FocusNews::Path(path) => Some(path.clone()),
+        FocusNews::Step(step) => path?.after(step),
+        FocusNews::Gap(_) => None,
+    })
+}
+
+fn size(news: &FocusNews) -> usize {
+    match news {
+        FocusNews::Path(path) => path.byte_len(),
+        FocusNews::Step(step) => step.byte_len(),
+        FocusNews::Gap(_) => size_of::<FocusNews>(),
     }
 }
 

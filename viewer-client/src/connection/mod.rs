@@ -9,22 +9,26 @@ mod session;
 mod tls;
 
 pub use backoff::delay;
-pub use inbox::{Delivery, Inbox};
+pub use inbox::{Delivery, FocusNews, Inbox};
 pub use peer::{Bearer, Peer, Trust};
 pub use proto::Fingerprint;
-pub use session::{SceneFetcher, Session, SessionError};
+pub use session::{Greeting, SceneFetcher, Session, SessionError};
 
 use std::fmt;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Instant;
 
-use proto::{ReceivedScene, TracerEvent};
-use tokio::sync::Notify;
+use common::{Appearance, Order, Role};
+use proto::{NumberedOrder, ReceivedScene, TracerEvent, ViewerEvent, WantedFilter};
+use tokio::sync::{Notify, mpsc};
 use tokio::task::JoinSet;
 use tokio_util::sync::CancellationToken;
 
 use crate::status::LinkState;
+
+/// Messages to the daemon that may wait for the connection's thread.
+const OUTBOX: usize = 64;
 
 /// Called whenever something new lies in the inbox.
 pub type Waker = Box<dyn Fn() + Send + Sync>;
@@ -34,6 +38,7 @@ pub struct Link {
     peer: Peer,
     inbox: Arc<Inbox>,
     retry_now: Arc<Notify>,
+    outbox: mpsc::Sender<ViewerEvent>,
     shutdown: CancellationToken,
     thread: Option<JoinHandle<()>>,
 }
@@ -50,6 +55,7 @@ impl Link {
         let inbox = Arc::new(Inbox::default());
         let retry_now = Arc::new(Notify::new());
         let shutdown = CancellationToken::new();
+        let (outbox, orders) = mpsc::channel(OUTBOX);
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         let keeper = Keeper {
             peer: peer.clone(),
@@ -58,11 +64,18 @@ impl Link {
             shutdown: shutdown.clone(),
             waker,
             held_hash: String::new(),
+            orders,
+            greeting: Greeting {
+                name: "Lvis viewer".to_owned(),
+                role: Role::Driver,
+                focus: true,
+                ..Greeting::default()
+            },
         };
         let thread = std::thread::Builder::new()
             .name("connection".to_owned())
             .spawn(move || runtime.block_on(keeper.run()))?;
-        Ok(Self { peer, inbox, retry_now, shutdown, thread: Some(thread) })
+        Ok(Self { peer, inbox, retry_now, outbox, shutdown, thread: Some(thread) })
     }
 
     /// Where the daemon should be.
@@ -73,6 +86,33 @@ impl Link {
     /// Takes everything that came.
     pub fn take(&self) -> Delivery {
         self.inbox.take()
+    }
+
+    /// Sends an order; the daemon replies to it under the number `request`. False where it cannot be
+    /// sent now.
+    pub fn order(&self, request: u32, order: Order) -> bool {
+        self.say(ViewerEvent::Order(NumberedOrder { request, order: Some(order) }))
+    }
+
+    /// Sets which paths come; blank for all. The daemon answers with a reply of the same `revision`,
+    /// which must be at least 1 and grow. The filter is set again when the connection is.
+    pub fn set_filter(&self, revision: u32, text: String) -> bool {
+        self.say(ViewerEvent::SetFilter(WantedFilter { revision, text }))
+    }
+
+    /// Asks for every step of the explorer, or for no more of them; also when the connection is made
+    /// anew.
+    pub fn set_focus(&self, on: bool) -> bool {
+        self.say(ViewerEvent::SetFocus(on))
+    }
+
+    /// Shows the others something of this viewer.
+    pub fn show(&self, appearance: Appearance) -> bool {
+        self.say(ViewerEvent::Appearance(appearance))
+    }
+
+    fn say(&self, event: ViewerEvent) -> bool {
+        self.outbox.try_send(event).is_ok()
     }
 
     /// Ends the wait for the next attempt.
@@ -101,6 +141,9 @@ struct Keeper {
     waker: Waker,
     /// The scene that was delivered last; it is not fetched again.
     held_hash: String,
+    orders: mpsc::Receiver<ViewerEvent>,
+    /// How the next session begins.
+    greeting: Greeting,
 }
 
 impl Keeper {
@@ -111,7 +154,7 @@ impl Keeper {
             self.set_state(LinkState::Connecting);
             let ended = tokio::select! {
                 () = shutdown.cancelled() => return,
-                opened = Session::open(&self.peer, "Lvis viewer", None) => match opened {
+                opened = Session::open(&self.peer, self.greeting.clone()) => match opened {
                     Ok(session) => self.listen(session, &mut failures).await,
                     Err(error) => Some(error),
                 },
@@ -127,6 +170,19 @@ impl Keeper {
                 () = self.retry_now.notified() => {}
                 () = tokio::time::sleep(wait) => {}
             }
+            // What was wanted is in the greeting; orders to a daemon that was not there are void.
+            while let Ok(event) = self.orders.try_recv() {
+                self.remember(&event);
+            }
+        }
+    }
+
+    /// Keeps in mind what the next session begins with.
+    fn remember(&mut self, event: &ViewerEvent) {
+        match event {
+            ViewerEvent::SetFilter(filter) => self.greeting.filter = Some(filter.clone()),
+            ViewerEvent::SetFocus(on) => self.greeting.focus = *on,
+            _ => {}
         }
     }
 
@@ -145,10 +201,17 @@ impl Keeper {
                     Ok(Err(error)) => return Some(error),
                     Err(error) => tracing::error!("fetching the scene failed: {error}"),
                 },
+                Some(event) = self.orders.recv() => {
+                    self.remember(&event);
+                    if !session.say(event) {
+                        tracing::warn!("the daemon does not listen; something was not said");
+                    }
+                }
                 event = session.next() => match event {
                     Ok(event) => {
-                        if matches!(event, TracerEvent::Welcome(_)) {
+                        if let TracerEvent::Welcome(welcome) = &event {
                             *failures = 0;
+                            self.greeting.resume.clone_from(&welcome.resume);
                             let fetch = session.scene_fetcher().fetch(self.held_hash.clone());
                             fetching.spawn(fetch);
                             self.set_state(LinkState::Connected);

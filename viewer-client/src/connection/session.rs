@@ -29,7 +29,7 @@ const PING_TIMEOUT: Duration = Duration::from_secs(10);
 /// How long to wait for the daemon to end the stream after a goodbye.
 const FAREWELL: Duration = Duration::from_millis(300);
 /// Messages from this viewer that may wait to be sent.
-const OUTBOX: usize = 8;
+const OUTBOX: usize = 32;
 
 /// Why a session could not begin or came to an end.
 #[derive(Debug, Error)]
@@ -86,6 +86,21 @@ impl From<Status> for SessionError {
 /// A client that shows its token.
 type Client = TracerClient<InterceptedService<Channel, Bearer>>;
 
+/// How a viewer introduces itself.
+#[derive(Clone, Debug, Default)]
+pub struct Greeting {
+    /// A name that the others see.
+    pub name: String,
+    /// The role that it would like.
+    pub role: Role,
+    /// With one, only paths that it wants come.
+    pub filter: Option<WantedFilter>,
+    /// Every step of the explorer is wanted.
+    pub focus: bool,
+    /// What the welcome of a session gave that was lost; blank for none.
+    pub resume: String,
+}
+
 /// An open session.
 #[derive(Debug)]
 pub struct Session {
@@ -95,12 +110,8 @@ pub struct Session {
 }
 
 impl Session {
-    /// Connects to `peer` and says hello. With a `filter`, only paths that it wants come.
-    pub async fn open(
-        peer: &Peer,
-        viewer_name: &str,
-        filter: Option<WantedFilter>,
-    ) -> Result<Self, SessionError> {
+    /// Connects to `peer` and says hello.
+    pub async fn open(peer: &Peer, greeting: Greeting) -> Result<Self, SessionError> {
         if peer.exposes_token() {
             return Err(SessionError::ExposedToken(peer.address.clone()));
         }
@@ -119,10 +130,12 @@ impl Session {
         let (outgoing, outbox) = mpsc::channel(OUTBOX);
         let hello = ViewerEvent::Hello(Hello {
             version: ProtocolVersion::CURRENT,
-            viewer_name: viewer_name.to_owned(),
-            wanted_role: Role::Observer,
+            viewer_name: greeting.name,
+            wanted_role: greeting.role,
             data_budget: 0,
-            filter,
+            filter: greeting.filter,
+            focus: greeting.focus,
+            resume: greeting.resume,
         });
         // The outbox is empty and its other end is held here.
         let sent = outgoing.try_send(hello.into());
@@ -146,6 +159,11 @@ impl Session {
             TracerEvent::Goodbye(reason) => Err(SessionError::Goodbye(reason)),
             event => Ok(event),
         }
+    }
+
+    /// Says something. False where too much waits to be sent; the daemon then does not read.
+    pub fn say(&self, event: ViewerEvent) -> bool {
+        self.outgoing.try_send(event.into()).is_ok()
     }
 
     /// A handle to fetch the scene with, while the session goes on.

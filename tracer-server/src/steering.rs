@@ -1,0 +1,88 @@
+//! Orders on their way from the service to those who carry them out: bounded, and never in the way.
+
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+
+use common::{Author, ChainCommand, ExplorerCommand};
+use thiserror::Error;
+
+/// Orders that may wait for the explorer, and as many for the chains.
+const WAITING: usize = 64;
+
+/// An order, with whoever gave it.
+#[derive(Clone, Debug)]
+pub struct Envelope<C> {
+    /// Whoever gave it.
+    pub author: Author,
+    /// The number that the reply bears.
+    pub request: u32,
+    /// What is to be done.
+    pub command: C,
+}
+
+/// What the explorer's thread is woken by.
+#[derive(Clone, Debug)]
+pub enum ExplorerMail {
+    /// An order.
+    Order(Envelope<ExplorerCommand>),
+    /// Something that it waits for may have changed.
+    Wake,
+}
+
+/// Where orders are given; cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Steering {
+    explorer: SyncSender<ExplorerMail>,
+    chains: SyncSender<Envelope<ChainCommand>>,
+}
+
+/// Where orders arrive.
+#[derive(Debug)]
+pub struct Orders {
+    /// Those for the explorer.
+    pub explorer: Receiver<ExplorerMail>,
+    /// Those for the chains.
+    pub chains: Receiver<Envelope<ChainCommand>>,
+}
+
+/// Why an order does not arrive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum NotTaken {
+    /// Too many are waiting.
+    #[error("{WAITING} orders wait already; give fewer at a time")]
+    Busy,
+    /// Nobody carries them out.
+    #[error("this daemon carries out no such orders")]
+    Nobody,
+}
+
+/// Both ends.
+pub fn channel() -> (Steering, Orders) {
+    let (explorer, explorer_orders) = sync_channel(WAITING);
+    let (chains, chain_orders) = sync_channel(WAITING);
+    (Steering { explorer, chains }, Orders { explorer: explorer_orders, chains: chain_orders })
+}
+
+impl Steering {
+    /// Orders something of the explorer.
+    pub fn explore(&self, order: Envelope<ExplorerCommand>) -> Result<(), NotTaken> {
+        self.explorer.try_send(ExplorerMail::Order(order)).map_err(|error| why(&error))
+    }
+
+    /// Orders something of the chains.
+    pub fn change(&self, order: Envelope<ChainCommand>) -> Result<(), NotTaken> {
+        self.chains.try_send(order).map_err(|error| why(&error))
+    }
+
+    /// Lets the explorer see whether it is watched.
+    pub fn wake_explorer(&self) {
+        // Where the mailbox is full, it is awake.
+        drop(self.explorer.try_send(ExplorerMail::Wake));
+    }
+}
+
+fn why<T>(error: &TrySendError<T>) -> NotTaken {
+    match error {
+        TrySendError::Full(_) => NotTaken::Busy,
+        TrySendError::Disconnected(_) => NotTaken::Nobody,
+    }
+}
