@@ -172,8 +172,12 @@ const RULES: &[Rule] = &[
         files: &[
             "viewer-client/src/camera",
             "viewer-client/src/command",
+            "viewer-client/src/darkroom",
+            "viewer-client/src/errand",
             "viewer-client/src/film",
+            "viewer-client/src/imaging",
             "viewer-client/src/model",
+            "viewer-client/src/region",
             "viewer-client/src/steering",
             "viewer-client/src/store",
         ],

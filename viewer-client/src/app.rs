@@ -6,13 +6,13 @@ use std::time::Instant;
 use egui_wgpu::RenderState;
 
 use crate::camera::{Bounds, ViewCamera};
-use crate::command::{CameraCommand, CloudCommand, Command};
+use crate::command::{CameraCommand, CloudCommand, Command, ImageCommand};
 use crate::connection::{Delivery, FocusNews, Link};
-use crate::film::Film;
+use crate::darkroom::Darkroom;
 use crate::gpu::{Quality, Renderer, Uploaded};
 use crate::keys;
 use crate::model::{Model, corners, drawing_aids};
-use crate::panel::{self, Panel, Slot};
+use crate::panel::{self, NOTICE_TIME, Panel, Slot};
 use crate::settings::Settings;
 use crate::status::{LinkState, Status};
 use crate::store::{Drawn, PAGE_POINTS, Store};
@@ -31,7 +31,7 @@ pub struct Viewer {
     camera: ViewCamera,
     status: Status,
     store: Store,
-    film: Film,
+    darkroom: Darkroom,
     model: Option<Model>,
     /// Hash of the scene that is shown.
     scene_hash: String,
@@ -47,6 +47,8 @@ pub struct Viewer {
     script: Vec<Command>,
     /// Orders given so far: the number of the last one.
     orders: u32,
+    /// Filters set so far: the number of the last one.
+    filters: u32,
 }
 
 /// What on the graphics card no longer fits what the viewer holds.
@@ -65,7 +67,7 @@ impl Viewer {
             settings,
             camera: ViewCamera::default(),
             status,
-            film: Film::default(),
+            darkroom: Darkroom::default(),
             model: None,
             scene_hash: String::new(),
             link: None,
@@ -77,6 +79,7 @@ impl Viewer {
             closing: false,
             script: Vec::new(),
             orders: 0,
+            filters: 0,
         }
     }
 
@@ -96,13 +99,23 @@ impl Viewer {
     /// Takes over a connection.
     pub fn set_link(&mut self, link: Link) {
         self.link = Some(link);
+        if !self.settings.filter.text.is_empty() {
+            self.ask_for_paths();
+        }
     }
 
     /// Follows the commands of a script. Those for the camera wait for the scene, which would
-    /// otherwise undo them.
+    /// otherwise undo them; those that give the image away wait for the image.
     pub fn run_script(&mut self, commands: Vec<Command>) {
         for command in commands {
-            if matches!(command, Command::Camera(_)) && self.model.is_none() {
+            let must_wait = match command {
+                Command::Camera(_) => self.model.is_none(),
+                Command::Image(ImageCommand::Save(_) | ImageCommand::Tev(_)) => {
+                    self.darkroom.film.size() == [0, 0]
+                }
+                _ => false,
+            };
+            if must_wait {
                 self.script.push(command);
             } else {
                 self.apply(command);
@@ -122,8 +135,9 @@ impl Viewer {
 
     /// True when scene, image, statistics and all paths that have come are taken in.
     pub fn is_settled(&self) -> bool {
-        let whole = self.model.is_some() && self.film.size() != [0, 0];
-        whole && self.waiting.is_empty() && self.status.statistics.is_some()
+        let whole = self.model.is_some() && self.darkroom.film.size() != [0, 0];
+        let idle = self.script.is_empty() && !self.darkroom.is_busy();
+        whole && idle && self.waiting.is_empty() && self.status.statistics.is_some()
     }
 
     /// What is known of the daemon.
@@ -137,6 +151,7 @@ impl Viewer {
         let delivery = self.link.as_ref().map(Link::take).unwrap_or_default();
         let mut news = !delivery.is_empty();
         self.take(delivery);
+        news |= self.darkroom.collect(&mut self.settings.image, &mut self.status);
         let time = self.started.elapsed().as_secs_f64();
         for _ in 0..BATCHES_PER_FRAME {
             let Some(batch) = self.waiting.pop_front() else { break };
@@ -159,7 +174,7 @@ impl Viewer {
             if welcome.scene_hash != self.scene_hash {
                 self.scene_hash.clone_from(&welcome.scene_hash);
                 self.store.clear();
-                self.film.clear();
+                self.darkroom.film.clear();
                 self.model = None;
                 self.stale = Stale { surfaces: true, aids: true };
             }
@@ -182,12 +197,18 @@ impl Viewer {
         }
         delivery.notices.into_iter().for_each(|notice| self.status.steering.take(notice));
         if let Some(reply) = delivery.filter {
+            if let Some(error) = &reply.error {
+                self.status.say(Err(format!("The filter is refused: {error}")));
+            }
             self.status.filter = Some(reply);
         }
         for tile in delivery.film.values() {
-            if !self.film.accept(tile) {
+            if !self.darkroom.film.accept(tile) {
                 tracing::warn!("a tile of the image contradicts itself and was left out");
             }
+        }
+        if !delivery.film.is_empty() && !self.script.is_empty() {
+            self.go_on();
         }
         if delivery.gaps > 0 {
             self.store.note_gap(delivery.gap.paths);
@@ -207,14 +228,20 @@ impl Viewer {
             self.camera.set_scene(model.bounds, camera);
         }
         self.model = model;
-        for command in std::mem::take(&mut self.script) {
-            self.apply(command);
-        }
+        self.go_on();
+    }
+
+    /// Goes on with the script as far as what has come allows.
+    fn go_on(&mut self) {
+        let commands = std::mem::take(&mut self.script);
+        self.run_script(commands);
     }
 
     /// Does what was asked for.
     pub fn apply(&mut self, command: Command) {
         tracing::trace!("{command}");
+        // The model of the camera would stand before the user's eyes.
+        self.stale.aids |= matches!(command, Command::Camera(CameraCommand::Through(_)));
         match command {
             Command::Camera(command) => self.camera.apply(command),
             Command::Cloud(command) => {
@@ -232,7 +259,14 @@ impl Viewer {
                 self.settings.scene.apply(command);
                 self.stale.aids = true;
             }
-            Command::Image(command) => self.settings.image.apply(command),
+            Command::Filter(command) => {
+                self.settings.filter.apply(&command);
+                self.ask_for_paths();
+            }
+            Command::Image(command) => {
+                self.settings.image.apply(&command);
+                self.darkroom.apply(&command, &self.settings.image, &mut self.status);
+            }
             Command::Layout(command) => self.settings.layout.apply(command),
             Command::Order(order) => self.send(order),
             Command::Reconnect => {
@@ -242,8 +276,19 @@ impl Viewer {
             }
             Command::Quit => self.closing = true,
         }
-        // The model of the camera would stand before the user's eyes.
-        self.stale.aids |= matches!(command, Command::Camera(CameraCommand::Through(_)));
+    }
+
+    /// Tells the daemon which paths to send from now on; those before were others.
+    fn ask_for_paths(&mut self) {
+        self.store.clear();
+        self.filters += 1;
+        let text = self.settings.filter.text.clone();
+        if let Some(link) = &self.link
+            && !link.set_filter(self.filters, text)
+        {
+            let problem = "The filter was not sent: the daemon is busy; set it again.";
+            self.status.say(Err(problem.to_owned()));
+        }
     }
 
     fn send(&mut self, order: common::Order) {
@@ -265,7 +310,8 @@ impl Viewer {
             camera: &self.camera,
             status: &self.status,
             store: &self.store,
-            film: &self.film,
+            film: &self.darkroom.film,
+            reference: self.darkroom.reference.as_ref(),
             model: self.model.as_ref(),
             now: Instant::now(),
         };
@@ -283,8 +329,16 @@ impl Viewer {
 
     /// Countdowns run by themselves.
     fn keep_time(&self, ctx: &egui::Context) {
+        if let Some(notice) = &self.status.notice {
+            let left = NOTICE_TIME.saturating_sub(notice.at.elapsed());
+            if !left.is_zero() {
+                ctx.request_repaint_after(left);
+            }
+        }
         if !self.waiting.is_empty() {
             ctx.request_repaint();
+        } else if self.darkroom.is_busy() {
+            ctx.request_repaint_after(std::time::Duration::from_millis(50));
         } else if matches!(self.status.link, LinkState::Disconnected { .. }) {
             ctx.request_repaint_after(std::time::Duration::from_millis(250));
         }

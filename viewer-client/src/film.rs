@@ -1,8 +1,8 @@
-//! The progressive image: put together from tiles, shown with an exposure.
+//! The progressive image: put together from tiles.
 
 use std::sync::LazyLock;
 
-use common::FilmTile;
+use common::{FilmTile, Rgb};
 
 /// Larger films are refused: their image would not fit into a texture of common graphics cards.
 const LARGEST_SIDE: u32 = 8192;
@@ -73,10 +73,14 @@ impl Film {
         Some([rgb[0], rgb[1], rgb[2]])
     }
 
-    /// The image in sRGB, `stops` brighter, three bytes a pixel.
-    pub fn to_srgb(&self, stops: f32) -> Vec<u8> {
-        let scale = stops.exp2();
-        self.pixels.iter().map(|v| encode_srgb(v * scale)).collect()
+    /// Radiance, three floats a pixel, row by row from the top.
+    pub fn rgb(&self) -> &[f32] {
+        &self.pixels
+    }
+
+    /// The radiance of every pixel, row by row from the top.
+    pub fn radiance(&self) -> Vec<Rgb> {
+        self.pixels.as_chunks::<3>().0.iter().map(|rgb| Rgb::from(*rgb)).collect()
     }
 }
 
@@ -142,13 +146,5 @@ mod tests {
         }
         assert_eq!(encode_srgb(7.0), 255, "too bright");
         assert_eq!(encode_srgb(f32::NAN), 0, "no number");
-    }
-
-    #[test]
-    fn exposure_counts_in_stops() {
-        let mut film = Film::default();
-        assert!(film.accept(&tile(0, vec![0.25; 18])), "a whole image");
-        assert!(film.to_srgb(2.0).iter().all(|b| *b == 255), "two stops make a quarter white");
-        assert!(film.to_srgb(0.0).iter().all(|b| *b == 137), "as it is");
     }
 }

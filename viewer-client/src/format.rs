@@ -23,6 +23,18 @@ fn digits(value: f64) -> String {
     }
 }
 
+/// A measured value in few letters: `0.25`, `12`, `5.0e-4`.
+pub fn value(value: f32) -> String {
+    match value.abs() {
+        0.0 => "0".to_owned(),
+        v if (0.01..10_000.0).contains(&v) => {
+            let text = format!("{value:.3}");
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        }
+        _ => format!("{value:.1e}"),
+    }
+}
+
 /// Bytes in binary units: `512 B`, `1.50 KiB`, `12.0 MiB`.
 pub fn bytes(value: u64) -> String {
     let value = value as f64;
@@ -70,6 +82,11 @@ mod tests {
         ];
         for (value, text) in cases {
             assert_eq!(count(value), text, "{value}");
+        }
+        for (number, text) in
+            [(0.0, "0"), (0.25, "0.25"), (100.0, "100"), (5e-4, "5.0e-4"), (1e6, "1.0e6")]
+        {
+            assert_eq!(value(number), text, "{number}");
         }
         assert_eq!(bytes(1023), "1023 B", "bytes");
         assert_eq!(bytes(1536), "1.50 KiB", "kibibytes");

@@ -1,8 +1,8 @@
 //! What the user has chosen; panels read it, [`crate::command::Command`]s change it.
 
 use crate::command::{
-    ClipSide, CloudCommand, ColorMode, ColorScale, ImageCommand, LayoutCommand, Marks, PanelName,
-    SceneCommand, Shading, ThemeName,
+    ClipSide, CloudCommand, ColorMode, ColorScale, FilterCommand, ImageCommand, Layer,
+    LayoutCommand, Marks, PanelName, SceneCommand, Shading, ThemeName, ToneCurve,
 };
 
 /// Every choice.
@@ -12,6 +12,8 @@ pub struct Settings {
     pub cloud: CloudSettings,
     /// How the scene is drawn.
     pub scene: SceneSettings,
+    /// Which paths are shown.
+    pub filter: FilterSettings,
     /// How the progressive image is shown.
     pub image: ImageSettings,
     /// What the window holds.
@@ -150,8 +152,25 @@ impl SceneSettings {
     }
 }
 
+/// Which paths are shown.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FilterSettings {
+    /// The filter; blank for all paths.
+    pub text: String,
+}
+
+impl FilterSettings {
+    /// Follows a command.
+    pub fn apply(&mut self, command: &FilterCommand) {
+        match command {
+            FilterCommand::Set(text) => self.text.clone_from(text),
+            FilterCommand::Clear => self.text.clear(),
+        }
+    }
+}
+
 /// How the progressive image is shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImageSettings {
     /// Brightness in stops.
     pub exposure: f32,
@@ -159,6 +178,28 @@ pub struct ImageSettings {
     pub chosen: bool,
     /// Screen points a film pixel, or as large as fits.
     pub zoom: Option<f32>,
+    /// Film point in the middle of the panel while it is zoomed.
+    pub centre: [f32; 2],
+    /// What is shown.
+    pub layer: Layer,
+    /// How light becomes colour.
+    pub tone: ToneCurve,
+    /// The exponent of [`ToneCurve::Gamma`].
+    pub gamma: f32,
+}
+
+impl Default for ImageSettings {
+    fn default() -> Self {
+        Self {
+            exposure: 0.0,
+            chosen: false,
+            zoom: None,
+            centre: [0.5; 2],
+            layer: Layer::Image,
+            tone: ToneCurve::Srgb,
+            gamma: 2.2,
+        }
+    }
 }
 
 impl ImageSettings {
@@ -172,13 +213,22 @@ impl ImageSettings {
         }
     }
 
-    /// Follows a command.
-    pub fn apply(&mut self, command: ImageCommand) {
-        match command {
+    /// Follows a command; those about files and other programs concern the viewer alone.
+    pub fn apply(&mut self, command: &ImageCommand) {
+        match *command {
             ImageCommand::Exposure(stops) => (self.exposure, self.chosen) = (stops, true),
             ImageCommand::Auto => self.chosen = false,
             ImageCommand::Zoom(factor) => self.zoom = Some(factor),
-            ImageCommand::Fit => self.zoom = None,
+            ImageCommand::Look(centre) => self.centre = centre,
+            ImageCommand::Fit => (self.zoom, self.centre) = (None, [0.5; 2]),
+            ImageCommand::Show(layer) => self.layer = layer,
+            ImageCommand::Tone(tone) => self.tone = tone,
+            ImageCommand::Gamma(gamma) => self.gamma = gamma,
+            ImageCommand::Forget if self.layer.compares() => self.layer = Layer::Image,
+            ImageCommand::Reference(_)
+            | ImageCommand::Forget
+            | ImageCommand::Save(_)
+            | ImageCommand::Tev(_) => {}
         }
     }
 }
@@ -227,10 +277,10 @@ mod tests {
         let mut image = ImageSettings::default();
         image.suit(4.0);
         assert_eq!(image.exposure, -4.0, "sixteen times too bright");
-        image.apply(ImageCommand::Exposure(1.0));
+        image.apply(&ImageCommand::Exposure(1.0));
         image.suit(4.0);
         assert_eq!(image.exposure, 1.0, "the user's choice stays");
-        image.apply(ImageCommand::Auto);
+        image.apply(&ImageCommand::Auto);
         image.suit(0.0);
         assert_eq!(image.exposure, 1.0, "a black image tells nothing");
         image.suit(0.25);

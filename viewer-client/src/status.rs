@@ -23,6 +23,17 @@ pub enum LinkState {
     Connected,
 }
 
+/// A word to the user, shown for some seconds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Notice {
+    /// What happened, or what went wrong and what to do.
+    pub text: String,
+    /// It went wrong.
+    pub is_bad: bool,
+    /// When it was said.
+    pub at: Instant,
+}
+
 /// What is known of the daemon and of the way to it.
 #[derive(Debug)]
 pub struct Status {
@@ -48,6 +59,8 @@ pub struct Status {
     pub filter: Option<FilterReply>,
     /// Who steers, and what the explorer does.
     pub steering: Steering,
+    /// The newest word to the user.
+    pub notice: Option<Notice>,
 }
 
 impl Status {
@@ -65,6 +78,7 @@ impl Status {
             reconnects: 0,
             filter: None,
             steering: Steering::default(),
+            notice: None,
         }
     }
 
@@ -76,6 +90,13 @@ impl Status {
     /// What this viewer may do now.
     pub fn role(&self) -> Role {
         self.welcome.as_ref().map_or(Role::Observer, |w| self.steering.role(w.session))
+    }
+
+    /// Says something to the user.
+    pub fn say(&mut self, said: Result<String, String>) {
+        let is_bad = said.is_err();
+        let text = said.unwrap_or_else(|problem| problem);
+        self.notice = Some(Notice { text, is_bad, at: Instant::now() });
     }
 
     /// Takes a daemon's welcome; it is another daemon, or the same one anew.

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use crate::camera::ViewCamera;
 use crate::film::Film;
+use crate::imaging::Reference;
 use crate::model::Model;
 use crate::settings::Settings;
 use crate::status::Status;
@@ -22,6 +23,8 @@ pub struct World<'a> {
     pub store: &'a Store,
     /// The progressive image.
     pub film: &'a Film,
+    /// What the image is compared with.
+    pub reference: Option<&'a Reference>,
     /// The scene, once it has come.
     pub model: Option<&'a Model>,
     /// When the frame began.

@@ -1,12 +1,12 @@
-//! `image ...`: how the progressive image is shown.
+//! `image ...`: how the progressive image is shown, and where it goes.
 
 use std::fmt;
 
 use super::Form;
 use super::words::{CommandError, Words};
 
-/// What may be done to the image on screen; the tracer's film is untouched.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What may be done with the image on screen; the tracer's film is untouched.
+#[derive(Clone, Debug, PartialEq)]
 pub enum ImageCommand {
     /// Brightness in stops: each doubles it.
     Exposure(f32),
@@ -14,15 +14,101 @@ pub enum ImageCommand {
     Auto,
     /// Screen points a film pixel.
     Zoom(f32),
+    /// Film point in the middle of the panel; both coordinates from 0 to 1, from the upper left.
+    Look([f32; 2]),
     /// As large as its panel.
     Fit,
+    /// What is shown.
+    Show(Layer),
+    /// How light becomes colour.
+    Tone(ToneCurve),
+    /// The exponent of [`ToneCurve::Gamma`].
+    Gamma(f32),
+    /// Reads an EXR file to compare with.
+    Reference(String),
+    /// Compares with nothing.
+    Forget,
+    /// Writes the image as EXR, or what is shown as PNG; the name tells which.
+    Save(String),
+    /// Sends the image to the viewer tev at HOST:PORT.
+    Tev(String),
+}
+
+/// What the image panel shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Layer {
+    /// The image.
+    #[default]
+    Image,
+    /// What it is compared with.
+    Reference,
+    /// How much brighter or darker than the reference it is.
+    Difference,
+    /// The relative squared error of each pixel against the reference.
+    Error,
+}
+
+impl Layer {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Image, Self::Reference, Self::Difference, Self::Error];
+
+    /// True where there is nothing to show without a reference.
+    pub fn compares(self) -> bool {
+        matches!(self, Self::Reference | Self::Difference | Self::Error)
+    }
+}
+
+impl fmt::Display for Layer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Image => "image",
+            Self::Reference => "reference",
+            Self::Difference => "difference",
+            Self::Error => "error",
+        })
+    }
+}
+
+/// How light becomes colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ToneCurve {
+    /// As screens expect it.
+    #[default]
+    Srgb,
+    /// A power of the light.
+    Gamma,
+    /// Luminance as a colour, on a logarithmic scale.
+    False,
+}
+
+impl ToneCurve {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Srgb, Self::Gamma, Self::False];
+}
+
+impl fmt::Display for ToneCurve {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Srgb => "srgb",
+            Self::Gamma => "gamma",
+            Self::False => "false",
+        })
+    }
 }
 
 pub(super) const FORMS: &[Form] = &[
     ("image exposure STOPS", "brightness; each stop doubles it (-20 to 20)"),
     ("image auto", "brightness that suits the scene"),
     ("image zoom FACTOR", "screen points a film pixel"),
+    ("image look U V", "film point in the middle, from 0 to 1"),
     ("image fit", "as large as its panel"),
+    ("image show LAYER", "image, reference, difference or error"),
+    ("image tone srgb|gamma|false", "how light becomes colour"),
+    ("image gamma X", "exponent of the tone `gamma` (0.5 to 4)"),
+    ("image reference FILE.exr", "compare with an image"),
+    ("image forget", "compare with nothing"),
+    ("image save FILE", "write the radiance as .exr, or what is shown as .png"),
+    ("image tev HOST:PORT", "send the image to the viewer tev (its port is 14158)"),
 ];
 
 impl fmt::Display for ImageCommand {
@@ -31,7 +117,15 @@ impl fmt::Display for ImageCommand {
             Self::Exposure(stops) => write!(f, "exposure {stops}"),
             Self::Auto => write!(f, "auto"),
             Self::Zoom(factor) => write!(f, "zoom {factor}"),
+            Self::Look([u, v]) => write!(f, "look {u} {v}"),
             Self::Fit => write!(f, "fit"),
+            Self::Show(layer) => write!(f, "show {layer}"),
+            Self::Tone(tone) => write!(f, "tone {tone}"),
+            Self::Gamma(gamma) => write!(f, "gamma {gamma}"),
+            Self::Reference(file) => write!(f, "reference {file}"),
+            Self::Forget => write!(f, "forget"),
+            Self::Save(file) => write!(f, "save {file}"),
+            Self::Tev(address) => write!(f, "tev {address}"),
         }
     }
 }
@@ -40,8 +134,18 @@ pub(super) fn parse(words: &mut Words<'_>) -> Result<ImageCommand, CommandError>
     Ok(match words.next("image command")? {
         "exposure" => ImageCommand::Exposure(words.number("STOPS", -20.0..=20.0)?),
         "auto" => ImageCommand::Auto,
-        "zoom" => ImageCommand::Zoom(words.number("FACTOR", 0.05..=32.0)?),
+        "zoom" => ImageCommand::Zoom(words.number("FACTOR", 0.05..=64.0)?),
+        "look" => {
+            ImageCommand::Look([words.number("U", 0.0..=1.0)?, words.number("V", 0.0..=1.0)?])
+        }
         "fit" => ImageCommand::Fit,
+        "show" => ImageCommand::Show(words.choice("LAYER", &Layer::ALL)?),
+        "tone" => ImageCommand::Tone(words.choice("TONE", &ToneCurve::ALL)?),
+        "gamma" => ImageCommand::Gamma(words.number("X", 0.5..=4.0)?),
+        "reference" => ImageCommand::Reference(words.rest("FILE")?),
+        "forget" => ImageCommand::Forget,
+        "save" => ImageCommand::Save(words.rest("FILE")?),
+        "tev" => ImageCommand::Tev(words.rest("HOST:PORT")?),
         other => return Err(CommandError::Unknown(format!("image {other}"))),
     })
 }

@@ -6,6 +6,7 @@
 
 mod camera;
 mod cloud;
+mod filter;
 mod image;
 mod layout;
 mod scene;
@@ -14,7 +15,8 @@ mod words;
 
 pub use camera::{CameraCommand, Side};
 pub use cloud::{CloudCommand, ColorMode, ColorScale, Marks};
-pub use image::ImageCommand;
+pub use filter::FilterCommand;
+pub use image::{ImageCommand, Layer, ToneCurve};
 pub use layout::{LayoutCommand, PanelName, ThemeName};
 pub use scene::{ClipSide, SceneCommand, Shading};
 pub use words::{CommandError, Switch};
@@ -26,7 +28,7 @@ use common::Order;
 use words::Words;
 
 /// One action.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Moves the eye.
     Camera(CameraCommand),
@@ -34,6 +36,8 @@ pub enum Command {
     Cloud(CloudCommand),
     /// Concerns the surfaces and drawing aids.
     Scene(SceneCommand),
+    /// Says which paths to show.
+    Filter(FilterCommand),
     /// Concerns the progressive image.
     Image(ImageCommand),
     /// Concerns the window's panels.
@@ -56,18 +60,11 @@ const OWN_FORMS: [Form; 2] = [
 
 /// Every text form, for help and documentation.
 pub fn forms() -> impl Iterator<Item = Form> {
-    [
-        camera::FORMS,
-        cloud::FORMS,
-        scene::FORMS,
-        image::FORMS,
-        layout::FORMS,
-        steer::FORMS,
-        &OWN_FORMS,
-    ]
-    .into_iter()
-    .flatten()
-    .copied()
+    [camera::FORMS, cloud::FORMS, scene::FORMS, filter::FORMS, image::FORMS]
+        .into_iter()
+        .chain([layout::FORMS, steer::FORMS, &OWN_FORMS])
+        .flatten()
+        .copied()
 }
 
 impl fmt::Display for Command {
@@ -76,6 +73,7 @@ impl fmt::Display for Command {
             Self::Camera(command) => write!(f, "camera {command}"),
             Self::Cloud(command) => write!(f, "cloud {command}"),
             Self::Scene(command) => write!(f, "scene {command}"),
+            Self::Filter(command) => write!(f, "filter {command}"),
             Self::Image(command) => write!(f, "image {command}"),
             Self::Layout(command) => write!(f, "{command}"),
             Self::Order(order) => write!(f, "{}", steer::Text(*order)),
@@ -94,6 +92,7 @@ impl FromStr for Command {
             "camera" => Self::Camera(camera::parse(&mut words)?),
             "cloud" => Self::Cloud(cloud::parse(&mut words)?),
             "scene" => Self::Scene(scene::parse(&mut words)?),
+            "filter" => Self::Filter(filter::parse(&mut words)?),
             "image" => Self::Image(image::parse(&mut words)?),
             group @ ("explorer" | "chains" | "lease") => {
                 Self::Order(steer::parse(group, &mut words)?)
@@ -120,7 +119,10 @@ mod tests {
         cloud dots 1.5\ncloud marks ends\ncloud scale log\ncloud cue 0.5\ncloud dim 0.25\n\
         scene shading wireframe\nscene opacity 0.25\nscene cutaway off\nscene camera on\n\
         scene grid toggle\nscene clip -x\nscene cut 0.25\n\
-        image exposure -1.5\nimage auto\nimage zoom 2\nimage fit\n\
+        filter set film in rect(0.25, 0, 1, 0.5)\nfilter clear\n\
+        image exposure -1.5\nimage auto\nimage zoom 2\nimage look 0.25 0.75\nimage fit\n\
+        image show difference\nimage tone gamma\nimage gamma 1.8\nimage reference a b.exr\n\
+        image forget\nimage save out.png\nimage tev 127.0.0.1:14158\n\
         panel statistics off\ntheme light\nhelp toggle\n\
         explorer seed 3.0.1024\nexplorer play 2.5\nexplorer pause\nexplorer step 10\n\
         explorer skip accepted\nexplorer allow 0,2,5\nexplorer fan 2 100\nchains pause\n\
@@ -152,6 +154,8 @@ mod tests {
         let texts = texts.chain(ColorScale::ALL.iter().map(|s| format!("cloud scale {s}")));
         let texts = texts.chain(ClipSide::ALL.iter().map(|s| format!("scene clip {s}")));
         let texts = texts.chain(Shading::ALL.iter().map(|s| format!("scene shading {s}")));
+        let texts = texts.chain(Layer::ALL.iter().map(|l| format!("image show {l}")));
+        let texts = texts.chain(ToneCurve::ALL.iter().map(|t| format!("image tone {t}")));
         let texts = texts.chain(PanelName::ALL.iter().map(|p| format!("panel {p} toggle")));
         let texts = texts.chain(["theme dark".into(), "theme light".into(), "theme toggle".into()]);
         let orders = ["explorer seed newest", "explorer skip 3", "explorer allow all"];
@@ -174,6 +178,8 @@ mod tests {
         assert!(complaint("explorer seed 3.4").contains("CHAIN.EPOCH.STEP"), "shows the form");
         assert!(complaint("explorer allow 1,64").contains("numbers"), "no such strategy");
         assert!(complaint("scene grid maybe").contains("on, off, toggle"), "lists the choices");
+        assert!(complaint("filter set edges >").contains("cannot be read"), "says what is wrong");
+        assert!(complaint("image save").contains("FILE is missing"), "names the parameter");
         assert!(complaint("quit now").contains("`now` is too much"), "names the rest");
     }
 }

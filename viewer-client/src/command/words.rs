@@ -46,6 +46,9 @@ pub enum CommandError {
         /// What would do.
         choices: String,
     },
+    /// A filter that cannot be read.
+    #[error("the filter cannot be read: {0}")]
+    BadFilter(String),
     /// Words after the end.
     #[error("`{0}` is too much")]
     TooMuch(String),
@@ -157,6 +160,15 @@ impl<'a> Words<'a> {
             let choices: Vec<String> = choices.iter().map(ToString::to_string).collect();
             CommandError::NoChoice { found: word.to_owned(), choices: choices.join(", ") }
         })
+    }
+
+    /// All that is left, such as the name of a file: words with one space between them.
+    pub(super) fn rest(&mut self, parameter: &'static str) -> Result<String, CommandError> {
+        let words: Vec<&str> = self.rest.by_ref().collect();
+        if words.is_empty() {
+            return Err(CommandError::MissingParameter(parameter));
+        }
+        Ok(words.join(" "))
     }
 
     /// On, off or toggle.

@@ -7,6 +7,7 @@ mod cloud;
 mod help;
 mod image;
 mod menu;
+mod notice;
 mod scene;
 mod statistics;
 mod status;
@@ -18,6 +19,8 @@ mod widgets;
 use std::fmt::Debug;
 
 use egui::{Frame, Margin, ScrollArea, Ui};
+
+pub use notice::NOTICE_TIME;
 
 use crate::command::{Command, PanelName};
 use crate::world::World;
@@ -55,6 +58,7 @@ pub fn all() -> Vec<(Slot, Box<dyn Panel>)> {
         (Slot::Right(PanelName::Image), Box::new(image::ImagePanel::default())),
         (Slot::Right(PanelName::Statistics), Box::new(statistics::StatisticsPanel)),
         (Slot::Centre, Box::new(viewport::Viewport)),
+        (Slot::Overlay, Box::new(notice::NoticePanel)),
         (Slot::Overlay, Box::new(help::Help)),
     ]
 }

@@ -1,0 +1,240 @@
+//! From numbers to the colours on screen.
+
+use common::Rgb;
+
+use super::Reference;
+use crate::command::{Layer, ToneCurve};
+use crate::film::{Film, encode_srgb};
+use crate::format;
+use crate::settings::ImageSettings;
+
+/// Low to high, from dark to light: also in grey, and with any kind of colour vision.
+const SEQUENTIAL: [[u8; 3]; 9] = [
+    [68, 1, 84],
+    [71, 44, 122],
+    [59, 81, 139],
+    [44, 113, 142],
+    [33, 144, 141],
+    [39, 173, 129],
+    [92, 200, 99],
+    [170, 220, 50],
+    [253, 231, 37],
+];
+/// Too dark in blue, right in white, too bright in orange: apart for any kind of colour vision.
+const DIVERGING: [[u8; 3]; 9] = [
+    [16, 60, 140],
+    [50, 110, 190],
+    [110, 165, 215],
+    [185, 210, 235],
+    [245, 245, 245],
+    [250, 210, 160],
+    [235, 150, 60],
+    [200, 95, 10],
+    [130, 50, 0],
+];
+/// Where nothing is known: a grey that is in neither ramp.
+const UNKNOWN: [u8; 3] = [58, 58, 62];
+/// Decades of luminance in false colours.
+const DECADES: f32 = 4.0;
+/// The largest luminance in false colours at exposure 0.
+const BRIGHTEST: f32 = 10.0;
+/// The relative squared errors at the ends of their ramp.
+const ERRORS: [f32; 2] = [1e-4, 10.0];
+/// Colours of a legend.
+pub const BAND: usize = 64;
+
+/// What there is to show.
+#[derive(Clone, Copy, Debug)]
+pub struct Sources<'a> {
+    /// The progressive image.
+    pub film: &'a Film,
+    /// What it is compared with.
+    pub reference: Option<&'a Reference>,
+}
+
+/// A series of colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ramp {
+    /// From little to much.
+    Sequential,
+    /// From less through equal to more.
+    Diverging,
+}
+
+/// What the colours say.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Legend {
+    /// Of what.
+    pub title: String,
+    /// The colours.
+    pub ramp: Ramp,
+    /// Values at equal distances, from the left to the right.
+    pub ticks: Vec<String>,
+}
+
+/// The colour at `place`, from 0 to 1, of a ramp; what is no number has a colour of its own.
+pub fn ramp_color(ramp: Ramp, place: f32) -> [u8; 3] {
+    let colors = match ramp {
+        Ramp::Sequential => &SEQUENTIAL,
+        Ramp::Diverging => &DIVERGING,
+    };
+    if place.is_nan() {
+        return UNKNOWN;
+    }
+    let place = place.clamp(0.0, 1.0) * (colors.len() - 1) as f32;
+    let index = (place as usize).min(colors.len() - 2);
+    let share = place - index as f32;
+    let mix = |a: u8, b: u8| (f32::from(a) + share * (f32::from(b) - f32::from(a))).round() as u8;
+    let [low, high] = [colors[index], colors[index + 1]];
+    [mix(low[0], high[0]), mix(low[1], high[1]), mix(low[2], high[2])]
+}
+
+/// Three bytes a pixel, row by row, of what `look` asks for; `None` where there is nothing to show.
+pub fn develop(sources: Sources<'_>, look: &ImageSettings) -> Option<Vec<u8>> {
+    let film = sources.film;
+    match look.layer {
+        Layer::Image => Some(tone(film.rgb(), look)),
+        Layer::Reference => {
+            let reference = sources.reference.filter(|r| r.fits(film))?;
+            let rgb: Vec<f32> = reference.pixels.iter().flat_map(|p| p.to_f32()).collect();
+            Some(tone(&rgb, look))
+        }
+        Layer::Difference => {
+            let reference = sources.reference.filter(|r| r.fits(film))?;
+            let gain = f64::from(look.exposure.exp2());
+            let place = |(image, reference): (Rgb, &Rgb)| {
+                let difference = gain * (image.luminance() - reference.luminance());
+                ramp_color(Ramp::Diverging, (0.5 + 0.5 * difference) as f32)
+            };
+            Some(film.radiance().into_iter().zip(&reference.pixels).flat_map(place).collect())
+        }
+        Layer::Error => {
+            let errors = sources.reference.filter(|r| r.fits(film))?.errors(film);
+            let color = |e: f64| ramp_color(Ramp::Sequential, logarithmic(e as f32, ERRORS));
+            Some(errors.into_iter().flat_map(color).collect())
+        }
+    }
+}
+
+/// What the colours of `look` say; `None` where they are those of the light itself.
+pub fn legend(look: &ImageSettings) -> Option<Legend> {
+    match look.layer {
+        Layer::Image | Layer::Reference if look.tone == ToneCurve::False => {
+            let top = BRIGHTEST / look.exposure.exp2();
+            Some(Legend {
+                title: "luminance, logarithmic".to_owned(),
+                ramp: Ramp::Sequential,
+                ticks: decades([top / 10_f32.powf(DECADES), top]),
+            })
+        }
+        Layer::Image | Layer::Reference => None,
+        Layer::Difference => {
+            let end = format::value((-look.exposure).exp2());
+            Some(Legend {
+                title: "darker or brighter than the reference, in luminance".to_owned(),
+                ramp: Ramp::Diverging,
+                ticks: vec![format!("-{end}"), "0".to_owned(), format!("+{end}")],
+            })
+        }
+        Layer::Error => Some(Legend {
+            title: "relative squared error, logarithmic".to_owned(),
+            ramp: Ramp::Sequential,
+            ticks: decades(ERRORS),
+        }),
+    }
+}
+
+/// Every power of ten times the first value.
+fn decades([low, high]: [f32; 2]) -> Vec<String> {
+    let steps = (high / low).log10().round() as i32;
+    (0..=steps).map(|i| format::value(low * 10_f32.powi(i))).collect()
+}
+
+/// Where a value lies between two others on a logarithmic scale; zero is where the lower one is.
+fn logarithmic(value: f32, [low, high]: [f32; 2]) -> f32 {
+    if value == 0.0 { 0.0 } else { (value / low).ln() / (high / low).ln() }
+}
+
+fn tone(rgb: &[f32], look: &ImageSettings) -> Vec<u8> {
+    let scale = look.exposure.exp2();
+    match look.tone {
+        ToneCurve::Srgb => rgb.iter().map(|v| encode_srgb(v * scale)).collect(),
+        ToneCurve::Gamma => {
+            let exponent = 1.0 / look.gamma;
+            let encode = |v: &f32| (255.0 * (v * scale).clamp(0.0, 1.0).powf(exponent)) as u8;
+            rgb.iter().map(encode).collect()
+        }
+        ToneCurve::False => {
+            let ends = [BRIGHTEST / 10_f32.powf(DECADES), BRIGHTEST];
+            let color = |p: &[f32; 3]| {
+                let luminance = Rgb::from(*p).luminance() as f32;
+                ramp_color(Ramp::Sequential, logarithmic(luminance * scale, ends))
+            };
+            rgb.as_chunks::<3>().0.iter().flat_map(color).collect()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use common::FilmTile;
+
+    use super::*;
+
+    fn film(value: f32) -> Film {
+        let mut film = Film::default();
+        let rgb = vec![value; 12];
+        let tile = FilmTile { sequence: 1, width: 2, height: 2, first_row: 0, steps: 1, rgb };
+        assert!(film.accept(&tile), "a whole image");
+        film
+    }
+
+    fn first(film: &Film, reference: Option<f64>, look: &ImageSettings) -> Option<[u8; 3]> {
+        let reference = reference.map(|grey| Reference {
+            name: String::new(),
+            width: 2,
+            height: 2,
+            pixels: vec![Rgb::grey(grey); 4],
+        });
+        let sources = Sources { film, reference: reference.as_ref() };
+        develop(sources, look).map(|bytes| [bytes[0], bytes[1], bytes[2]])
+    }
+
+    #[test]
+    fn exposure_counts_in_stops() {
+        let look = ImageSettings { exposure: 2.0, ..ImageSettings::default() };
+        assert_eq!(first(&film(0.25), None, &look), Some([255; 3]), "a quarter becomes white");
+        assert_eq!(first(&film(0.25), None, &ImageSettings::default()), Some([137; 3]), "as is");
+        let look = ImageSettings { tone: ToneCurve::Gamma, gamma: 2.0, ..look };
+        assert_eq!(first(&film(0.0625), None, &look), Some([127; 3]), "the root of a quarter");
+    }
+
+    #[test]
+    fn false_colours_follow_luminance_and_exposure() {
+        let look = ImageSettings { tone: ToneCurve::False, ..ImageSettings::default() };
+        let at =
+            |value, stops| first(&film(value), None, &ImageSettings { exposure: stops, ..look });
+        assert_eq!(at(10.0, 0.0), Some(SEQUENTIAL[8]), "the brightest");
+        assert_eq!(at(0.001, 0.0), Some(SEQUENTIAL[0]), "four decades below");
+        assert_eq!(at(2.5, 2.0), at(10.0, 0.0), "two stops are a factor of four");
+        let legend = legend(&ImageSettings { exposure: 1.0, ..look }).expect("colours need one");
+        assert_eq!(legend.ticks.first().map(String::as_str), Some("5.0e-4"), "{legend:?}");
+        assert_eq!(legend.ticks.len(), 5, "four decades: {legend:?}");
+    }
+
+    #[test]
+    fn differences_have_a_sign() {
+        let look = ImageSettings { layer: Layer::Difference, ..ImageSettings::default() };
+        let at = |value| first(&film(value), Some(0.5), &look).expect("a reference");
+        assert_eq!(at(0.5), DIVERGING[4], "equal is white");
+        assert!(at(0.9)[0] > at(0.9)[2], "brighter is orange: {:?}", at(0.9));
+        assert!(at(0.1)[2] > at(0.1)[0], "darker is blue: {:?}", at(0.1));
+        assert_eq!(first(&film(0.5), None, &look), None, "no reference, nothing to show");
+    }
+
+    #[test]
+    fn what_is_no_number_is_seen() {
+        assert_eq!(ramp_color(Ramp::Sequential, f32::NAN), UNKNOWN, "not a colour of the ramp");
+        assert_eq!(logarithmic(0.0, ERRORS), 0.0, "no error is the least");
+    }
+}

@@ -1,0 +1,12 @@
+//! The progressive image as numbers and as colours: what it is compared with, how it is shown, and
+//! how it leaves the viewer. Knows nothing of windows.
+
+mod compare;
+mod develop;
+mod exchange;
+mod tev;
+
+pub use compare::{Comparison, Reference};
+pub use develop::{BAND, Legend, Ramp, Sources, develop, legend, ramp_color};
+pub use exchange::{ExchangeError, read_exr, save};
+pub use tev::{TEV_ADDRESS, send_to_tev};

@@ -1,0 +1,211 @@
+//! The progressive image: seen, measured, compared and given away.
+
+mod file;
+mod frame;
+mod legend;
+mod readout;
+
+use egui::{ColorImage, RichText, TextureHandle, TextureOptions, Ui};
+
+use super::Panel;
+use super::widgets::{Scale, capitalised, empty_state, slider};
+use crate::command::{Command, FilterCommand, ImageCommand, Layer, ToneCurve};
+use crate::format;
+use crate::imaging::{self, Sources};
+use crate::region;
+use crate::settings::ImageSettings;
+use crate::world::World;
+
+/// The image as a texture, and what the user is about to do with it.
+#[derive(Default)]
+pub(super) struct ImagePanel {
+    texture: Option<TextureHandle>,
+    /// What the texture shows.
+    shown: Option<Shown>,
+    frame: frame::FrameState,
+    files: file::Files,
+}
+
+/// What a texture was made from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Shown {
+    revision: u64,
+    look: ImageSettings,
+    /// Where the reference's pixels lie; another one lies elsewhere.
+    reference: usize,
+}
+
+impl std::fmt::Debug for ImagePanel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ImagePanel").field("shown", &self.shown).finish_non_exhaustive()
+    }
+}
+
+impl Panel for ImagePanel {
+    fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+        let [width, height] = world.film.size();
+        if width == 0 || height == 0 {
+            self.texture = None;
+            self.shown = None;
+            empty_state(
+                ui,
+                "No image yet",
+                "It appears as soon as a daemon is connected, and gets better by the second.",
+            );
+            return;
+        }
+        self.refresh(ui, world);
+        if let Some(texture) = &self.texture {
+            let hovered = self.frame.show(ui, world, texture.id(), commands);
+            readout::show(ui, world, hovered);
+        }
+        region_line(ui, world, commands);
+        layers(ui, world, commands);
+        if let Some(legend) = imaging::legend(&world.settings.image) {
+            legend::show(ui, &legend);
+        }
+        exposure(ui, world, commands);
+        tone(ui, world, commands);
+        zoom(ui, world, commands);
+        let text = format!(
+            "{width} × {height}, {} mutations a pixel",
+            format::count(world.film.steps() as f64 / (width * height) as f64)
+        );
+        ui.label(RichText::new(text).small().weak());
+        self.files.show(ui, world, commands);
+    }
+}
+
+impl ImagePanel {
+    fn refresh(&mut self, ui: &Ui, world: &World<'_>) {
+        let look = world.settings.image;
+        let wanted = Shown {
+            revision: world.film.revision(),
+            // Where one looks does not change what there is to see.
+            look: ImageSettings { zoom: None, centre: [0.5; 2], ..look },
+            reference: world.reference.map_or(0, |r| r.pixels.as_ptr().addr()),
+        };
+        if self.shown == Some(wanted) && self.texture.is_some() {
+            return;
+        }
+        let sources = Sources { film: world.film, reference: world.reference };
+        let plain = ImageSettings { layer: Layer::Image, ..look };
+        let bytes = imaging::develop(sources, &look).or_else(|| imaging::develop(sources, &plain));
+        let image = ColorImage::from_rgb(world.film.size(), &bytes.unwrap_or_default());
+        let options = TextureOptions {
+            magnification: egui::TextureFilter::Nearest,
+            ..TextureOptions::LINEAR
+        };
+        match &mut self.texture {
+            Some(texture) => texture.set(image, options),
+            None => self.texture = Some(ui.ctx().load_texture("film", image, options)),
+        }
+        self.shown = Some(wanted);
+    }
+}
+
+/// Which part of the image the paths come from, and the way back to all of it.
+fn region_line(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    let Some([u0, v0, u1, v1]) = region::region_of(&world.settings.filter.text) else { return };
+    let [width, height] = world.film.size().map(|side| side as f64);
+    ui.horizontal(|ui| {
+        let columns = ((u1 - u0) * width).round().max(1.0);
+        let rows = ((v1 - v0) * height).round().max(1.0);
+        ui.label(format!("Paths to {columns:.0} × {rows:.0} pixels"))
+            .on_hover_text("The filter wants paths that reached this part of the image only");
+        if ui.button("All").on_hover_text("Paths to the whole image").clicked() {
+            let text = region::with_region(&world.settings.filter.text, None);
+            let command =
+                if text.is_empty() { FilterCommand::Clear } else { FilterCommand::Set(text) };
+            commands.push(Command::Filter(command));
+        }
+    });
+}
+
+fn layers(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        for layer in Layer::ALL {
+            let missing = layer.compares() && world.reference.is_none();
+            let label = capitalised(&layer.to_string());
+            let chosen = world.settings.image.layer == layer;
+            ui.add_enabled_ui(!missing, |ui| {
+                let button = ui
+                    .selectable_label(chosen, label)
+                    .on_hover_text(meaning(layer))
+                    .on_disabled_hover_text("Load a reference first: see Compare below");
+                if button.clicked() {
+                    commands.push(Command::Image(ImageCommand::Show(layer)));
+                }
+            });
+        }
+    });
+}
+
+/// What a layer shows.
+fn meaning(layer: Layer) -> &'static str {
+    match layer {
+        Layer::Image => "The progressive image",
+        Layer::Reference => "The image to compare with",
+        Layer::Difference => "Orange is brighter than the reference, blue darker",
+        Layer::Error => "Where the image is still wrong, relative to the reference",
+    }
+}
+
+fn exposure(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    let tip = "Brightness of the image on screen; each stop doubles it ( , and . )";
+    let scale = Scale::linear(-10.0..=10.0, 1).suffix(" EV");
+    let stops = world.settings.image.exposure;
+    if let Some(stops) = slider(ui, "Exposure", tip, stops, scale) {
+        commands.push(Command::Image(ImageCommand::Exposure(stops)));
+    }
+}
+
+fn tone(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    let look = &world.settings.image;
+    if !matches!(look.layer, Layer::Image | Layer::Reference) {
+        return;
+    }
+    ui.horizontal(|ui| {
+        for (curve, label, tip) in [
+            (ToneCurve::Srgb, "sRGB", "As screens expect light"),
+            (ToneCurve::Gamma, "Gamma", "A power of the light"),
+            (ToneCurve::False, "False colour", "Luminance as a colour, over four decades"),
+        ] {
+            let button = ui.selectable_label(look.tone == curve, label).on_hover_text(tip);
+            if button.clicked() {
+                commands.push(Command::Image(ImageCommand::Tone(curve)));
+            }
+        }
+    });
+    if look.tone == ToneCurve::Gamma {
+        let scale = Scale::linear(0.5..=4.0, 2);
+        if let Some(gamma) = slider(ui, "Gamma", "Larger is flatter", look.gamma, scale) {
+            commands.push(Command::Image(ImageCommand::Gamma(gamma)));
+        }
+    }
+}
+
+fn zoom(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    let zoom = world.settings.image.zoom;
+    ui.horizontal(|ui| {
+        let fit = ui.selectable_label(zoom.is_none(), "Fit").on_hover_text("As wide as the panel");
+        if fit.clicked() {
+            commands.push(Command::Image(ImageCommand::Fit));
+        }
+        for factor in [1.0, 2.0, 4.0] {
+            let label = format!("{factor:.0}:1");
+            let chosen = ui
+                .selectable_label(zoom == Some(factor), label)
+                .on_hover_text("Screen points a pixel of the film; the wheel does it, too");
+            if chosen.clicked() {
+                commands.push(Command::Image(ImageCommand::Zoom(factor)));
+            }
+        }
+        let auto = ui
+            .selectable_label(!world.settings.image.chosen, "Auto exposure")
+            .on_hover_text("Brightness that suits the scene");
+        if auto.clicked() {
+            commands.push(Command::Image(ImageCommand::Auto));
+        }
+    });
+}
