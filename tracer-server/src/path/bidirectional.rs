@@ -78,14 +78,17 @@ impl Subpath {
         }
     }
 
-    /// The first `count` vertices, the last of them open for a connection, unless it is the start
-    /// of the path on a light; `None` when it cannot be connected.
-    fn open_end(&self, scene: &Tracer<'_>, count: usize, on_light: bool) -> Option<Vertices> {
-        let mut vertices: Vertices = self.vertices[..count].iter().copied().collect();
-        if let Some(end) = vertices.last_mut().filter(|_| !on_light) {
-            open_for_connection(scene, end).ok()?;
+    /// Opens the last of the first `count` vertices for a connection; returns what it was before, or
+    /// `None`, with nothing changed, when it cannot be connected.
+    #[inline]
+    fn open_end(&mut self, scene: &Tracer<'_>, count: usize) -> Option<Vertex> {
+        let end = &mut self.vertices[count - 1];
+        let before = *end;
+        if open_for_connection(scene, end).is_err() {
+            *end = before;
+            return None;
         }
-        Some(vertices)
+        Some(before)
     }
 }
 
@@ -164,26 +167,55 @@ impl BidirectionalSampler {
         film: DVec2,
         visit: &mut impl FnMut(&Path, f64),
     ) {
-        let Self { lens, light: light_walk, eye: eye_walk, path } = self;
-        let drawn = (eye > 0).then_some(film);
-        let eye_survival = if eye > 0 { eye_walk.survival[eye - 1] } else { 1.0 };
-        // The lens, `eye` vertices and `light` vertices make `eye + light` edges.
-        let most = light_walk.vertices.len().min(scene.max_edges() - eye);
-        let Some(eye_part) = eye_walk.open_end(scene, eye, false) else { return };
-        for light in 1..=most {
-            let Some(light_part) = light_walk.open_end(scene, light, light == 1) else { continue };
-            let splice = Splice {
-                base: lens,
-                kept_light: 0,
-                light: &light_part,
-                eye: &eye_part,
-                kept_from: 0,
-                film: drawn,
-            };
-            if path.connect(scene, &splice).is_ok() {
-                let survival = eye_survival * light_walk.survival[light - 1];
-                visit(path, 1.0 / (path.density_sum() * survival));
+        let mut closed_eye = None;
+        if eye > 0 {
+            closed_eye = self.eye.open_end(scene, eye);
+            if closed_eye.is_none() {
+                return;
             }
         }
+        // The lens, `eye` vertices and `light` vertices make `eye + light` edges.
+        let most = self.light.vertices.len().min(scene.max_edges() - eye);
+        for light in 1..=most {
+            // The start of the path needs no opening.
+            let mut closed_light = None;
+            if light > 1 {
+                closed_light = self.light.open_end(scene, light);
+                if closed_light.is_none() {
+                    continue;
+                }
+            }
+            let drawn = (eye > 0).then_some(film);
+            if self.join(scene, (light, eye), drawn) {
+                let eye_survival = if eye > 0 { self.eye.survival[eye - 1] } else { 1.0 };
+                let survival = eye_survival * self.light.survival[light - 1];
+                visit(&self.path, 1.0 / (self.path.density_sum() * survival));
+            }
+            if let Some(before) = closed_light {
+                self.light.vertices[light - 1] = before;
+            }
+        }
+        if let Some(before) = closed_eye {
+            self.eye.vertices[eye - 1] = before;
+        }
+    }
+
+    /// Makes the path of the first `light` vertices and the first `eye` vertices, whose ends are
+    /// open; false when it carries no light.
+    fn join(
+        &mut self,
+        scene: &Tracer<'_>,
+        (light, eye): (usize, usize),
+        film: Option<DVec2>,
+    ) -> bool {
+        let splice = Splice {
+            base: &self.lens,
+            kept_light: 0,
+            light: &self.light.vertices[..light],
+            eye: &self.eye.vertices[..eye],
+            kept_from: 0,
+            film,
+        };
+        self.path.connect(scene, &splice).is_ok()
     }
 }

@@ -53,11 +53,6 @@ impl SceneFeatures {
         }
     }
 
-    /// True when a point scatters as its material alone says.
-    pub(super) fn is_plain(self) -> bool {
-        !(self.shading_normals || self.textures || self.one_sided)
-    }
-
     /// What the features that are there ask for, in words, for people.
     pub fn present(self) -> Vec<&'static str> {
         let mut present = Vec::new();

@@ -197,22 +197,12 @@ impl Scene {
         self.primitives[primitive as usize].material
     }
 
-    /// The scattering at a point of a surface, all of it a function of the point alone.
+    /// The scattering at a point of a surface, all of it a function of the point alone: with
+    /// texture, shading normal and black back, as far as the point has any.
     #[inline]
     pub fn local(&self, at: &Anchor, material: u16) -> Local<'_> {
         let surface = &self.surfaces[usize::from(material)];
-        let local = Local::flat(Cow::Borrowed(&surface.bsdf), at.normal);
-        if self.features.is_plain() { local } else { self.detailed(local, at, surface) }
-    }
-
-    /// With texture, shading normal and black back, as far as the point has any.
-    fn detailed<'a>(
-        &self,
-        plain: Local<'a>,
-        at: &Anchor,
-        surface: &'a SurfaceMaterial,
-    ) -> Local<'a> {
-        let mut local = plain;
+        let mut local = Local::flat(Cow::Borrowed(&surface.bsdf), at.normal);
         let triangle = self.accel.triangles().get(at.primitive as usize);
         if let Some(paint) = &surface.paint {
             let uv = match triangle {
