@@ -31,6 +31,7 @@ const TRANSPORT: &[&str] = &[
     "tracer-server/src/film",
     "tracer-server/src/render",
     "tracer-server/src/engine",
+    "tracer-server/src/explorer",
     "tracer-server/src/verify",
 ];
 
@@ -83,9 +84,9 @@ const RULES: &[Rule] = &[
     },
     Rule {
         files: TRANSPORT,
-        except: &["tracer-server/src/engine"],
-        never: &["crate::engine", "crate::hub"],
-        because: "only the engine shows anybody what the chains do",
+        except: &["tracer-server/src/engine", "tracer-server/src/explorer"],
+        never: &["crate::engine", "crate::explorer", "crate::hub", "crate::steering"],
+        because: "only the engine and the explorer show anybody what chains do, and take orders",
     },
     Rule {
         files: &["tracer-server/src/math"],

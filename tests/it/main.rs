@@ -6,6 +6,7 @@
 mod citations;
 mod daemon;
 mod documents;
+mod explorer;
 mod filters;
 mod layers;
 mod reconnect;

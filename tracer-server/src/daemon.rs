@@ -8,8 +8,9 @@ use common::{Role, Welcome};
 use thiserror::Error;
 use tokio_util::sync::CancellationToken;
 
-use crate::chain::EnsembleSettings;
+use crate::chain::{Archive, EnsembleSettings};
 use crate::engine::Engine;
+use crate::explorer::Explorer;
 use crate::hub::HubLimits;
 use crate::mutation::Mixture;
 use crate::path::Failure;
@@ -21,6 +22,9 @@ use crate::steering;
 pub const DEFAULT_ADDRESS: SocketAddr =
     SocketAddr::new(std::net::IpAddr::V4(Ipv4Addr::LOCALHOST), 50061);
 
+/// Kept of what was shown, by default: a minute or two of it.
+const ARCHIVE_BYTES: usize = 64 << 20;
+
 /// How a daemon runs.
 #[derive(Clone, Debug)]
 pub struct DaemonOptions {
@@ -30,6 +34,8 @@ pub struct DaemonOptions {
     pub ensemble: EnsembleSettings,
     /// Bounds of its queues.
     pub limits: HubLimits,
+    /// Bytes of what was shown lately that are kept, so that viewers can pick from it.
+    pub archive_bytes: usize,
     /// Who may connect, and whether others can listen.
     pub security: Security,
 }
@@ -40,6 +46,7 @@ impl Default for DaemonOptions {
             listen: DEFAULT_ADDRESS,
             ensemble: EnsembleSettings::default(),
             limits: HubLimits::default(),
+            archive_bytes: ARCHIVE_BYTES,
             security: Security::default(),
         }
     }
@@ -52,7 +59,7 @@ pub enum DaemonError {
     #[error(transparent)]
     Service(#[from] StartError),
     /// The system gives no thread.
-    #[error("cannot start the thread of the chains")]
+    #[error("cannot start the thread of the chains, or that of the explorer")]
     Engine(#[source] io::Error),
 }
 
@@ -63,6 +70,7 @@ pub enum DaemonError {
 #[derive(Debug)]
 pub struct Daemon {
     server: Server,
+    _explorer: Explorer,
     _engine: Engine,
 }
 
@@ -70,12 +78,18 @@ impl Daemon {
     /// Starts the chains of `scene`, and shows them to whoever connects.
     pub fn start(scene: Arc<Scene>, options: &DaemonOptions) -> Result<Self, DaemonError> {
         let info = session_info(&scene, &options.ensemble);
-        let (steering, _) = steering::channel();
+        let (steering, orders) = steering::channel();
         let security = options.security.clone();
-        let server = Server::start(options.listen, info, options.limits, steering, security)?;
-        let engine = Engine::start(scene, &options.ensemble, server.hub().clone())
+        let server =
+            Server::start(options.listen, info, options.limits, steering.clone(), security)?;
+        let (hub, archive) = (server.hub(), Arc::new(Archive::new(options.archive_bytes)));
+        let subject = (Arc::clone(&scene), options.ensemble.seed);
+        let shelf = Arc::clone(&archive);
+        let explorer = Explorer::start(subject, shelf, hub.clone(), steering, orders.explorer)
             .map_err(DaemonError::Engine)?;
-        Ok(Self { server, _engine: engine })
+        let engine = Engine::start(scene, &options.ensemble, hub.clone(), archive, orders.chains)
+            .map_err(DaemonError::Engine)?;
+        Ok(Self { server, _explorer: explorer, _engine: engine })
     }
 
     /// The address that it listens on.

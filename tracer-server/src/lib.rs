@@ -5,6 +5,7 @@ pub mod chain;
 pub mod cli;
 pub mod daemon;
 pub mod engine;
+pub mod explorer;
 pub mod film;
 pub mod hub;
 pub mod image_file;

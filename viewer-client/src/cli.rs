@@ -6,9 +6,9 @@ use std::time::Duration;
 
 use anyhow::{Context as _, anyhow};
 use clap::{Args, Parser, Subcommand};
-use common::Filter;
+use common::{Filter, Order};
 
-use crate::command;
+use crate::command::{self, Command};
 use crate::connection::{Bearer, Fingerprint, Peer, Trust};
 
 const EXAMPLES: &str = "\
@@ -19,6 +19,8 @@ Examples:
   viewer-client render-box:50061 --token-file token --fingerprint 3F:A2:...
   viewer-client --headless --screenshot-to view.png --wait-paths 20000
   viewer-client watch 127.0.0.1:50061 --count 10
+  viewer-client watch 127.0.0.1:50061 --focus --order 'explorer seed newest' \
+      --order 'explorer step 20' --order 'explorer fan 2 8'
   viewer-client bench --paths 10000,100000";
 
 /// Shows the scene, its light paths, and the picture they make.
@@ -97,7 +99,14 @@ pub struct WatchArgs {
     /// One JSON object a line.
     #[arg(long)]
     pub json: bool,
-    /// Ends after this many batches.
+    /// Prints the steps of the explorer, and who steers, instead of batches.
+    #[arg(long)]
+    pub focus: bool,
+    /// Gives an order, such as `explorer step 20`, as the driver; may be repeated. Each is given when
+    /// the one before is done, and the program ends after the last one unless the explorer plays.
+    #[arg(long, value_name = "ORDER", value_parser = order, requires = "focus")]
+    pub order: Vec<Order>,
+    /// Ends after this many batches, or steps of the explorer.
     #[arg(long, value_name = "N")]
     pub count: Option<u64>,
 }
@@ -167,7 +176,9 @@ fn long_help() -> String {
     let lines = command::forms().chain([comment]);
     let lines: Vec<String> = lines.map(|(form, help)| format!("  {form:<50} {help}")).collect();
     let commands = lines.join("\n");
-    format!("{EXAMPLES}\n\nCommands of --run (keys and menus use the same):\n{commands}")
+    format!(
+        "{EXAMPLES}\n\nCommands of --run (keys and menus use the same; the orders among them of --order too):\n{commands}"
+    )
 }
 
 fn address(text: &str) -> Result<String, String> {
@@ -184,6 +195,15 @@ fn filter(text: &str) -> Result<String, String> {
     match Filter::parse(text) {
         Ok(_) => Ok(text.to_owned()),
         Err(error) => Err(format!("\n{}", error.pointed(text))),
+    }
+}
+
+/// One of the commands that steer.
+fn order(text: &str) -> Result<Order, String> {
+    match text.parse() {
+        Ok(Command::Order(order)) => Ok(order),
+        Ok(_) => Err("orders begin with `explorer`, `chains` or `lease`".to_owned()),
+        Err(error) => Err(error.to_string()),
     }
 }
 
@@ -239,6 +259,7 @@ mod tests {
         for line in [
             "viewer-client nowhere",
             "viewer-client watch 127.0.0.1:5 --filter edges",
+            "viewer-client watch 127.0.0.1:5 --order explorer",
             "viewer-client :50061",
             "viewer-client 127.0.0.1:99999",
             "viewer-client 127.0.0.1:5 --scene cornell",

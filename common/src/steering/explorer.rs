@@ -114,6 +114,8 @@ pub struct ExplorerState {
     pub steps: u64,
     /// How many of them were accepted.
     pub accepted: u64,
+    /// Number of the step that comes next; see [`FocusStep::number`].
+    pub next: u64,
     /// Who gave the last order.
     pub by: Option<Author>,
 }
@@ -162,11 +164,12 @@ impl FocusPath {
 }
 
 /// What became of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FocusOutcome {
     /// The proposal is the current path now.
     Accepted,
     /// The proposal lost against its acceptance probability.
+    #[default]
     Rejected,
     /// There is no proposal; index into the announced reasons.
     Failed(u8),
@@ -189,7 +192,7 @@ pub struct RatioFactors {
 }
 
 /// One step of the explorer, whatever became of it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FocusStep {
     /// Grows by one with every step and every proposal of a fan, whatever epoch they belong to.
     pub number: u64,

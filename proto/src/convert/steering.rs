@@ -266,6 +266,7 @@ impl From<&ExplorerState> for v1::ExplorerState {
             origin: state.origin.map(Into::into),
             steps: state.steps,
             accepted: state.accepted,
+            next: state.next,
             by: state.by.as_ref().map(Into::into),
         }
     }
@@ -289,6 +290,7 @@ impl TryFrom<v1::ExplorerState> for ExplorerState {
             origin: wire.origin.map(Into::into),
             steps: wire.steps,
             accepted: wire.accepted,
+            next: wire.next,
             by: author(wire.by)?,
         })
     }

@@ -94,6 +94,7 @@ fn notices_survive_the_wire() {
         origin: Some(PathId::default()),
         steps: 10,
         accepted: 3,
+        next: 11,
         by: Some(author()),
     };
     let chains = ChainState {

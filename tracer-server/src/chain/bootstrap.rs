@@ -29,7 +29,7 @@ impl From<&EnsembleSettings> for BootstrapSettings {
             threads: settings.threads,
             min_samples: (settings.bootstrap_samples / 8).max(1),
             max_samples: settings.bootstrap_samples,
-            relative_error: 0.003,
+            relative_error: settings.precision,
             chains: settings.chains,
         }
     }

@@ -1,10 +1,13 @@
 //! Many chains that make one image.
 
+use std::sync::Arc;
 use std::thread;
 
 use common::{ChainId, PathBatch};
 
-use super::{Bootstrap, Chain, ChainStatistics, PilotSettings, Prospect, Watch, explore};
+use super::{
+    Bootstrap, Chain, ChainStatistics, Checkpoint, PilotSettings, Prospect, Watch, explore,
+};
 use crate::film::Film;
 use crate::mutation::{Mixture, StrategyOptions};
 use crate::parallel;
@@ -33,6 +36,8 @@ pub struct EnsembleSettings {
     pub strategies: StrategyOptions,
     /// Samples drawn at most for the normalisation and the seeds.
     pub bootstrap_samples: u64,
+    /// Relative standard error of the normalisation that is good enough.
+    pub precision: f64,
 }
 
 impl Default for EnsembleSettings {
@@ -43,6 +48,7 @@ impl Default for EnsembleSettings {
             threads: thread::available_parallelism().map_or(1, Into::into),
             strategies: StrategyOptions::default(),
             bootstrap_samples: 1 << 19,
+            precision: 0.003,
         }
     }
 }
@@ -50,7 +56,7 @@ impl Default for EnsembleSettings {
 /// Chains with their common film.
 #[derive(Debug)]
 pub struct Ensemble {
-    mixture: Mixture,
+    mixture: Arc<Mixture>,
     prospects: Vec<Prospect>,
     bootstrap: Bootstrap,
     lanes: Vec<Lane>,
@@ -63,6 +69,8 @@ struct Lane {
     film: Film,
     chains: Vec<Chain>,
     rays: RayCounts,
+    /// The chains when the last window on them was opened.
+    checkpoints: Vec<Checkpoint>,
 }
 
 impl Ensemble {
@@ -82,6 +90,7 @@ impl Ensemble {
                 film: Film::new(camera.width, camera.height),
                 chains: Vec::new(),
                 rays: RayCounts::default(),
+                checkpoints: Vec::new(),
             })
             .collect();
         let seeds = bootstrap.seeds(scene, settings.chains);
@@ -90,6 +99,7 @@ impl Ensemble {
             lanes[id as usize % LANES].chains.push(chain);
         }
         let threads = settings.threads.max(1);
+        let mixture = Arc::new(mixture);
         Self { mixture, prospects, bootstrap, lanes, threads, steps: 0 }
     }
 
@@ -101,6 +111,30 @@ impl Ensemble {
     /// The strategies.
     pub fn mixture(&self) -> &Mixture {
         &self.mixture
+    }
+
+    /// The strategies, to be kept for as long as their paths are.
+    pub fn shared_mixture(&self) -> Arc<Mixture> {
+        Arc::clone(&self.mixture)
+    }
+
+    /// Opens an epoch, with these weights of the strategies. The image goes on, since it is the same
+    /// whatever the mixture; the counts begin anew.
+    pub fn begin_epoch(&mut self, epoch: u32, weights: &[f64]) {
+        let mut mixture = Mixture::clone(&self.mixture);
+        mixture.set_weights(weights);
+        for Lane { film, chains, rays, .. } in &mut self.lanes {
+            *rays = RayCounts::default();
+            for chain in chains {
+                chain.begin_epoch(epoch, &mixture, film);
+            }
+        }
+        self.mixture = Arc::new(mixture);
+    }
+
+    /// The states of all chains when the last window on them was opened.
+    pub fn take_checkpoints(&mut self) -> Vec<Checkpoint> {
+        self.lanes.iter_mut().flat_map(|lane| std::mem::take(&mut lane.checkpoints)).collect()
     }
 
     /// What the pilot found of each strategy, and the weights that follow.
@@ -181,10 +215,12 @@ impl Lane {
     ) -> Vec<PathBatch> {
         let scene = Tracer::new(scene);
         let mut watch = window.map(|window| Watch::new(window, steps));
+        self.checkpoints.clear();
         for chain in &mut self.chains {
             let mut left = steps;
             if let Some(watch) = &mut watch {
                 watch.begin(chain);
+                self.checkpoints.push(chain.checkpoint());
                 while watch.is_open() && left > 0 {
                     let step = chain.step(&scene, mixture, &mut self.film);
                     watch.see(chain, &step);

@@ -1,6 +1,8 @@
 //! Markov chains over paths.
 
+mod archive;
 mod bootstrap;
+mod checkpoint;
 mod ensemble;
 mod pilot;
 mod pool;
@@ -15,7 +17,9 @@ use crate::mutation::{Mixture, Proposal};
 use crate::path::{Draft, Failure, Path};
 use crate::scene::Tracer;
 
+pub use archive::{Archive, Gone, Round};
 pub use bootstrap::{Bootstrap, BootstrapSettings};
+pub use checkpoint::Checkpoint;
 pub use ensemble::{Ensemble, EnsembleSettings, LANES};
 pub use pilot::{PilotSettings, Prospect, explore};
 pub use pool::Pool;
@@ -54,6 +58,7 @@ pub struct Step {
 #[derive(Clone, Debug)]
 pub struct Chain {
     id: ChainId,
+    epoch: u32,
     rng: Rng,
     current: Box<Path>,
     proposal: Box<Path>,
@@ -65,7 +70,19 @@ pub struct Chain {
     steps: u64,
     /// The step that made the current path, and its acceptance probability and strategy.
     arrival: (u64, f64, StrategyId),
+    trial: Option<Trial>,
     statistics: ChainStatistics,
+}
+
+/// The last proposal of a chain, looked at closely.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trial {
+    /// What the strategy drew.
+    pub proposal: Proposal,
+    /// `Z` of the path before.
+    pub mixture_current: f64,
+    /// `Z` of the proposed path; zero where the strategy does not apply to it.
+    pub mixture_proposed: f64,
 }
 
 /// The probability of accepting a proposal of ratio `ratio`, or `None` when it is no number. The
@@ -78,9 +95,15 @@ pub(crate) fn acceptance(ratio: f64) -> Option<f64> {
 impl Chain {
     /// A chain that starts at `seed`. Its stream is keyed by the run's seed number and its id.
     pub fn new(id: ChainId, run_seed: u64, seed: Path, mixture: &Mixture) -> Self {
+        Self::with_stream(id, Rng::new(run_seed, Stream::Chain, u64::from(id.0)), seed, mixture)
+    }
+
+    /// A chain that starts at `seed` and draws its numbers from `rng`.
+    pub fn with_stream(id: ChainId, rng: Rng, seed: Path, mixture: &Mixture) -> Self {
         Self {
             id,
-            rng: Rng::new(run_seed, Stream::Chain, u64::from(id.0)),
+            epoch: 0,
+            rng,
             mixture_total: mixture.total(&seed),
             current: Box::new(seed),
             proposal: Box::default(),
@@ -88,8 +111,19 @@ impl Chain {
             pending: 0.0,
             steps: 0,
             arrival: (0, 1.0, PathHeader::NO_STRATEGY),
+            trial: None,
             statistics: ChainStatistics::new(mixture.len()),
         }
+    }
+
+    /// Opens an epoch with another mixture: the path stays, the counts begin anew.
+    pub fn begin_epoch(&mut self, epoch: u32, mixture: &Mixture, film: &mut Film) {
+        self.flush(film);
+        self.epoch = epoch;
+        self.steps = 0;
+        self.arrival = (0, 1.0, PathHeader::NO_STRATEGY);
+        self.mixture_total = mixture.total(&self.current);
+        self.statistics = ChainStatistics::new(mixture.len());
     }
 
     /// Which chain this is.
@@ -100,6 +134,22 @@ impl Chain {
     /// The current path.
     pub fn current(&self) -> &Path {
         &self.current
+    }
+
+    /// The last proposal where it was a complete path, and else what it left of an older one. After an
+    /// accepted step it is the path before.
+    pub fn proposed(&self) -> &Path {
+        &self.proposal
+    }
+
+    /// What the last step made before it was complete, or failed.
+    pub fn draft(&self) -> &Draft {
+        &self.draft
+    }
+
+    /// The last proposal; `None` where there was none.
+    pub fn trial(&self) -> Option<&Trial> {
+        self.trial.as_ref()
     }
 
     /// Steps taken.
@@ -117,6 +167,8 @@ impl Chain {
     #[inline]
     pub fn step(&mut self, scene: &Tracer<'_>, mixture: &Mixture, film: &mut Film) -> Step {
         self.steps += 1;
+        self.trial = None;
+        self.draft.range = None;
         let chosen = mixture.choose(&self.current, self.mixture_total, &mut self.rng);
         let Some(strategy) = chosen else {
             self.pending += 1.0;
@@ -151,11 +203,8 @@ impl Chain {
         mixture: &Mixture,
         film: &mut Film,
     ) -> Step {
-        // The strategy must also be chosen in the reverse move: Z(x) / Z(y), or never.
-        let applies_back = mixture.get(strategy).applicable(&self.proposal);
-        let total = mixture.total(&self.proposal);
-        let mixing = if applies_back { self.mixture_total / total } else { 0.0 };
-        let Some(a) = acceptance(proposal.ratio * mixing) else {
+        let weighed = self.weigh(strategy, proposal, mixture, self.mixture_total);
+        let Some((a, total)) = weighed else {
             return self.fail(strategy, Failure::NotFinite);
         };
         self.pending += 1.0 - a;
@@ -176,6 +225,70 @@ impl Chain {
         Step { strategy, acceptance: a, outcome: Outcome::Rejected }
     }
 
+    /// The acceptance probability of a proposal and its `Z`; `None` where it is no number. `before` is
+    /// `Z` of the current path.
+    #[inline]
+    fn weigh(
+        &mut self,
+        strategy: usize,
+        proposal: &Proposal,
+        mixture: &Mixture,
+        before: f64,
+    ) -> Option<(f64, f64)> {
+        // The strategy must also be chosen in the reverse move: Z(x) / Z(y), or never.
+        let applies_back = mixture.get(strategy).applicable(&self.proposal);
+        let total = mixture.total(&self.proposal);
+        let mixing = if applies_back { before / total } else { 0.0 };
+        self.trial = Some(Trial {
+            proposal: *proposal,
+            mixture_current: before,
+            mixture_proposed: if applies_back { total } else { 0.0 },
+        });
+        Some((acceptance(proposal.ratio * mixing)?, total))
+    }
+
+    /// Tries a mutation by `strategy` with numbers from `rng`, and stays: neither the path nor the
+    /// chain's own stream moves, and nothing is recorded.
+    pub fn probe(
+        &mut self,
+        scene: &Tracer<'_>,
+        mixture: &Mixture,
+        strategy: usize,
+        rng: &mut Rng,
+    ) -> Step {
+        self.trial = None;
+        self.draft.range = None;
+        let failed = |reason| Step { strategy, acceptance: 0.0, outcome: Outcome::Failed(reason) };
+        if !mixture.get(strategy).applicable(&self.current) {
+            return failed(Failure::NoSubpath);
+        }
+        let displacements = self.draft.displacements;
+        self.draft.displacements = (rng.uniform() * (1_u64 << 40) as f64) as u64;
+        let proposed = mixture.get(strategy).propose(
+            scene,
+            &self.current,
+            rng,
+            &mut self.draft,
+            &mut self.proposal,
+        );
+        self.draft.displacements = displacements;
+        let proposal = match proposed {
+            Ok(proposal) => proposal,
+            Err(reason) => return failed(reason),
+        };
+        let before = mixture.total(&self.current);
+        let Some((acceptance, _)) = self.weigh(strategy, &proposal, mixture, before) else {
+            return failed(Failure::NotFinite);
+        };
+        let Proposal { kept_light, kept_eye, .. } = proposal;
+        let outcome = if acceptance > 0.0 && rng.uniform() < acceptance {
+            Outcome::Accepted { kept_light, kept_eye }
+        } else {
+            Outcome::Rejected
+        };
+        Step { strategy, acceptance, outcome }
+    }
+
     /// Adds the current path's gathered weight to the film.
     pub fn flush(&mut self, film: &mut Film) {
         if self.pending > 0.0 {
@@ -185,11 +298,11 @@ impl Chain {
     }
 
     /// The current path's header; `dwell` and `weight` are for the watcher to fill in.
-    fn header(&self) -> PathHeader {
+    pub fn header(&self) -> PathHeader {
         let path = &self.current;
         let (step, acceptance, strategy) = self.arrival;
         PathHeader {
-            id: PathId { chain: self.id, epoch: 0, step },
+            id: PathId { chain: self.id, epoch: self.epoch, step },
             strategy,
             dwell: 0,
             weight: 0.0,

@@ -23,6 +23,10 @@ pub enum Stream {
     Census = 8,
     /// The look at a scene that sets the weights of its strategies.
     Pilot = 11,
+    /// One epoch of the explorer.
+    Explorer = 12,
+    /// One fan of the explorer.
+    Fan = 13,
     /// Tests and benchmarks.
     Laboratory = 6,
     /// The coordinates of one chain in primary-sample space.

@@ -97,12 +97,14 @@ impl Mutation for CausticPerturbation {
         let (k, start) = (x.edge_count(), chain_start(x));
         let theta = self.angles(x, start).draw(rng);
         let mut direction = turn(x.edges()[start].direction, theta, rng);
-        draft.clear();
+        draft.open(start + 1, k);
         let mut at = x.vertices()[start];
         for j in start + 1..k {
             at = extend(scene, &at, direction)?;
             if j + 1 < k {
-                direction = repeat(scene, &mut at, direction, &x.vertices()[j])?;
+                let onward = repeat(scene, &mut at, direction, &x.vertices()[j]);
+                // Where it went wrong is a vertex to look at.
+                direction = onward.inspect_err(|_| draft.light.push(at))?;
             } else {
                 open_for_connection(scene, &mut at).or(Err(Failure::KindChanged))?;
             }

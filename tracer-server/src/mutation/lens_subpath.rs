@@ -112,7 +112,7 @@ impl Mutation for LensSubpath {
     ) -> Result<Fresh, Failure> {
         let d = x.first_diffuse_from_eye();
         let film = Self::film_point(x.film(), draft, rng);
-        draft.clear();
+        draft.open(d, x.edge_count() + usize::from(self.aperture));
         let aim = if self.aperture {
             let aim = Aim::through(scene, film, || rng.array());
             draft.eye.push(aim.lens);

@@ -28,7 +28,7 @@ impl<'a> MixtureBasis<'a> {
     }
 }
 
-/// The strategies of a chain with their weights. Fixed before the chain starts.
+/// The strategies of a chain with their weights, fixed for an epoch.
 #[derive(Clone, Debug)]
 pub struct Mixture {
     entries: Vec<(f64, Strategy)>,
@@ -61,7 +61,8 @@ impl Mixture {
         self.entries.iter().map(|(weight, _)| *weight).collect()
     }
 
-    /// Sets the weights, in order. No chain may have started with the mixture.
+    /// Sets the weights, in order; zero switches a strategy off. Chains that have started with the
+    /// mixture must begin an epoch.
     pub fn set_weights(&mut self, weights: &[f64]) {
         for ((weight, _), new) in self.entries.iter_mut().zip(weights) {
             *weight = *new;
@@ -99,7 +100,10 @@ impl Mixture {
     #[inline]
     pub fn choose(&self, x: &Path, total: f64, rng: &mut Rng) -> Option<usize> {
         let entries = self.entries.iter().enumerate();
-        let applicable = entries.filter(|(_, (_, strategy))| strategy.applicable(x));
+        let may_act = |&(_, (weight, strategy)): &(usize, &(f64, Strategy))| {
+            *weight > 0.0 && strategy.applicable(x)
+        };
+        let applicable = entries.filter(may_act);
         pick(rng.uniform() * total, applicable.map(|(index, (weight, _))| (index, *weight)))
     }
 }

@@ -97,6 +97,10 @@ pub trait Mutation: Debug + Send + Sync {
 pub struct Proposal {
     /// `f(y) T(x|y) / (f(x) T(y|x))`; may be anything, the chain checks it.
     pub ratio: f64,
+    /// `Q(y | x)`.
+    pub forward: f64,
+    /// `Q(x | y)`.
+    pub backward: f64,
     /// Vertices shared with the current path, from the light end.
     pub kept_light: usize,
     /// Vertices shared with the current path, from the lens end.
@@ -125,7 +129,7 @@ pub fn propose<M: Mutation>(
     let backward = mutation.transition(y, x, mutation.reverse(via));
     let forward = mutation.transition(x, y, via);
     let (kept_light, kept_eye) = shared(mutation, x, via);
-    Ok(Proposal { ratio: backward / forward, kept_light, kept_eye })
+    Ok(Proposal { ratio: backward / forward, forward, backward, kept_light, kept_eye })
 }
 
 /// One move and its reverse, looked at closely.

@@ -46,7 +46,7 @@ fn misjudged<M: Mutation>(
     }
     let via = mutation.propose(scene, x, rng, draft, y)?;
     let ratio = transition(y, x, mutation.reverse(via)) / transition(x, y, via);
-    Ok(Proposal { ratio, kept_light: 0, kept_eye: 1 })
+    Ok(Proposal { ratio, forward: 1.0, backward: ratio, kept_light: 0, kept_eye: 1 })
 }
 
 /// Draws again until a proposal comes about.
@@ -135,7 +135,7 @@ pub(super) fn of_lens<'a>(right: LensPerturbation) -> Vec<Mutant<'a>> {
         let d = x.first_diffuse_from_eye();
         from_lens(scene, x, (film, d), draft, y, |direction| direction)?;
         let ratio = right.transition(y, x, d) / right.transition(x, y, d);
-        Ok(Proposal { ratio, kept_light: d, kept_eye: 1 })
+        Ok(Proposal { ratio, forward: 1.0, backward: ratio, kept_light: d, kept_eye: 1 })
     }
     let mut events = mutant("lens: event probabilities divided out", move |args| {
         misjudged(&right, args, |x, y, d| right.transition(x, y, d) * walk_pdf(y, d))
@@ -245,7 +245,8 @@ pub(super) fn of_primary<'a>(right: Primary) -> Vec<Mutant<'a>> {
         let mut tape = Tape::of(scene, x, light, rng).ok_or(Failure::NoSubpath)?;
         spoil(x, &mut tape);
         right.rebuild(scene, (x, light, &tape), rng, draft, y)?;
-        Ok(Proposal { ratio: x.density_sum() / y.density_sum(), kept_light: 0, kept_eye: 1 })
+        let (forward, backward) = (1.0 / x.density_sum(), 1.0 / y.density_sum());
+        Ok(Proposal { ratio: backward / forward, forward, backward, kept_light: 0, kept_eye: 1 })
     }
     let mut event = mutant("primary: the choice of the event is not inverted", move |args| {
         spoilt(right, args, |x, tape| {
@@ -275,7 +276,14 @@ pub(super) fn of_primary<'a>(right: Primary) -> Vec<Mutant<'a>> {
             let light = splits.clone().nth(nth).ok_or(Failure::NoSubpath)?;
             let tape = Tape::of(scene, x, light, rng).ok_or(Failure::NoSubpath)?;
             right.rebuild(scene, (x, light, &tape), rng, draft, y)?;
-            Ok(Proposal { ratio: x.density_sum() / y.density_sum(), kept_light: 0, kept_eye: 1 })
+            let (forward, backward) = (1.0 / x.density_sum(), 1.0 / y.density_sum());
+            Ok(Proposal {
+                ratio: backward / forward,
+                forward,
+                backward,
+                kept_light: 0,
+                kept_eye: 1,
+            })
         }),
         mutant("primary: a direction is not inverted", move |args| {
             spoilt(right, args, |_, tape| {

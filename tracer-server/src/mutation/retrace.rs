@@ -89,14 +89,16 @@ pub(super) fn from_lens(
     if !((0.0..1.0).contains(&film.x) && (0.0..1.0).contains(&film.y)) {
         return Err(Failure::OffFilm);
     }
-    draft.clear();
+    draft.open(end, x.edge_count());
     let mut at = x.vertices()[x.edge_count()];
     let mut direction = scene.camera().direction_from(at.position, film);
     for j in (end..x.edge_count()).rev() {
         at = extend(scene, &at, direction)?;
         let old = &x.vertices()[j];
         if old.event.is_specular() {
-            direction = repeat(scene, &mut at, direction, old)?;
+            let onward = repeat(scene, &mut at, direction, old);
+            // Where it went wrong is a vertex to look at.
+            direction = onward.inspect_err(|_| draft.eye.push(at))?;
         } else if j == 0 {
             end_on_light(scene, &mut at)?;
         } else {

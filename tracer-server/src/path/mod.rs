@@ -194,10 +194,9 @@ impl Path {
         (1..=last).rev().find(|&j| self.is_connectable(j)).unwrap_or(0)
     }
 
-    /// Builds the path anew from its vertices and compares every cached value; false when one is
-    /// stale.
-    pub fn is_fresh(&self, scene: &Tracer<'_>) -> bool {
-        let Some((&lens, inner)) = self.vertices.split_last() else { return false };
+    /// The path of these vertices, seen at `film`. Visibility is not tested.
+    pub fn rebuild(scene: &Tracer<'_>, vertices: &[Vertex], film: DVec2) -> Result<Self, Failure> {
+        let (&lens, inner) = vertices.split_last().ok_or(Failure::LengthOutOfRange)?;
         let lens = Self::from_lens(lens);
         let splice = Splice {
             base: &lens,
@@ -205,10 +204,17 @@ impl Path {
             light: inner,
             eye: &[],
             kept_from: 0,
-            film: Some(self.film),
+            film: Some(film),
         };
-        let mut fresh = Self::default();
-        fresh.splice(scene, &splice).is_ok() && fresh == *self
+        let mut path = Self::default();
+        path.splice(scene, &splice)?;
+        Ok(path)
+    }
+
+    /// Builds the path anew from its vertices and compares every cached value; false when one is
+    /// stale.
+    pub fn is_fresh(&self, scene: &Tracer<'_>) -> bool {
+        Self::rebuild(scene, &self.vertices, self.film).is_ok_and(|fresh| fresh == *self)
     }
 
     /// True when the path starts in a direction, on the sun or the sky.

@@ -36,13 +36,17 @@ pub struct Draft {
     pub light: Vertices,
     /// Vertices of a walk from the eye side.
     pub eye: Vertices,
+    /// Vertices kept from the light end and the first one kept at the eye end, as in [`Range`], once
+    /// they are chosen: what a failed proposal meant to replace.
+    pub range: Option<(usize, usize)>,
     /// Film displacements used so far by strategies that spread them evenly: a chain's own count.
     pub displacements: u64,
 }
 
 impl Draft {
-    /// Empties both sides; the count goes on.
-    pub fn clear(&mut self) {
+    /// Empties both sides for vertices that will replace a range; the count goes on.
+    pub fn open(&mut self, kept_light: usize, kept_from: usize) {
+        self.range = Some((kept_light, kept_from));
         self.light.clear();
         self.eye.clear();
     }
@@ -58,7 +62,7 @@ pub fn resample(
     draft: &mut Draft,
     y: &mut Path,
 ) -> Result<(), Failure> {
-    draft.clear();
+    draft.open(range.kept_light, range.kept_from);
     let Draft { light, eye, .. } = draft;
     walk_from_light(scene, x, range, numbers, light)?;
     let film = walk_from_eye(scene, x, range, numbers, eye)?;

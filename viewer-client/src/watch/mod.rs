@@ -1,17 +1,23 @@
 //! `viewer-client watch`: what a daemon sends, as lines of text.
 
+mod focus;
+
 use std::io::{self, Write as _};
 
-use anyhow::Context as _;
-use common::{BatchOrigin, FilterCounts, FilterReply, Gap, PathBatch, Statistics, Welcome};
+use anyhow::{Context as _, bail};
+use common::{
+    BatchOrigin, FilterCounts, FilterReply, Gap, PathBatch, PathId, Role, Statistics, Welcome,
+};
 use proto::{TracerEvent, WantedFilter};
 use serde_json::{Value, json};
 
 use crate::cli::WatchArgs;
 use crate::connection::{Greeting, Session};
 use crate::format;
+use focus::Script;
 
-/// Prints what comes, until `--count` batches with paths have come, the daemon ends or the reader goes away.
+/// Prints what comes, until `--count` batches with paths (or steps) have come, the orders are carried
+/// out, the daemon ends or the reader goes away.
 pub fn run(args: &WatchArgs) -> anyhow::Result<()> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     runtime.block_on(watch(args))
@@ -20,12 +26,20 @@ pub fn run(args: &WatchArgs) -> anyhow::Result<()> {
 async fn watch(args: &WatchArgs) -> anyhow::Result<()> {
     let filter = args.filter.clone().map(|text| WantedFilter { revision: 1, text });
     let peer = args.trust.peer(args.address.clone())?;
-    let greeting = Greeting { name: "Lvis watch".to_owned(), filter, ..Greeting::default() };
+    let role = if args.order.is_empty() { Role::Observer } else { Role::Driver };
+    let name = "Lvis watch".to_owned();
+    let greeting = Greeting { name, role, filter, focus: args.focus, ..Greeting::default() };
     let mut session = Session::open(&peer, greeting).await?;
-    let mut names = Names::default();
-    let mut batches = 0;
+    let mut names = Names { focus: args.focus, ..Names::default() };
+    let mut script = Script::new(&args.order);
+    let mut counted = 0;
     let mut out = io::stdout();
-    while args.count.is_none_or(|count| batches < count) {
+    while args.count.is_none_or(|count| counted < count) && !script.is_over() {
+        if let Some(order) = script.next()
+            && !session.say(order)
+        {
+            bail!("the daemon does not listen to orders");
+        }
         let event = tokio::select! {
             event = session.next() => event?,
             stop = tokio::signal::ctrl_c() => {
@@ -33,7 +47,12 @@ async fn watch(args: &WatchArgs) -> anyhow::Result<()> {
                 break;
             }
         };
-        batches += u64::from(matches!(&event, TracerEvent::Paths(batch) if !batch.is_empty()));
+        script.hear(&event)?;
+        counted += u64::from(match &event {
+            TracerEvent::Paths(batch) => !args.focus && !batch.is_empty(),
+            TracerEvent::FocusStep(_) => true,
+            _ => false,
+        });
         let Some(line) = names.line(&event, args.json) else { continue };
         if let Err(error) = writeln!(out, "{line}") {
             // `watch | head` ends the reader; that is no mistake.
@@ -51,7 +70,10 @@ async fn watch(args: &WatchArgs) -> anyhow::Result<()> {
 #[derive(Debug, Default)]
 struct Names {
     strategies: Vec<String>,
+    reasons: Vec<String>,
     conditions: Vec<String>,
+    /// The explorer is shown instead of paths.
+    focus: bool,
 }
 
 impl Names {
@@ -60,7 +82,13 @@ impl Names {
         match event {
             TracerEvent::Welcome(welcome) => {
                 self.strategies.clone_from(&welcome.strategies);
+                self.reasons.clone_from(&welcome.failure_reasons);
                 Some(if json { welcome_json(welcome).to_string() } else { welcome_line(welcome) })
+            }
+            TracerEvent::Paths(_) | TracerEvent::Gap(_) | TracerEvent::Statistics(_)
+                if self.focus =>
+            {
+                None
             }
             // A filter that wants nothing sends batches without paths; the statistics say so.
             TracerEvent::Paths(batch) if batch.is_empty() => None,
@@ -84,12 +112,22 @@ impl Names {
                 self.conditions.clone_from(&reply.conditions);
                 Some(if json { reply_json(reply).to_string() } else { reply_line(reply) })
             }
+            TracerEvent::FocusStep(step) => {
+                Some(if json { self.step_json(step).to_string() } else { self.step_line(step) })
+            }
+            TracerEvent::FocusPath(path) => {
+                Some(if json { focus::path_json(path).to_string() } else { focus::path_line(path) })
+            }
+            TracerEvent::FocusGap(steps) => Some(if json {
+                json!({ "event": "focus gap", "steps": steps }).to_string()
+            } else {
+                format!("gap  {steps} steps are missing")
+            }),
+            TracerEvent::Notice(_) if !self.focus => None,
+            TracerEvent::Notice(notice) if json => Some(focus::notice_json(notice).to_string()),
+            TracerEvent::Notice(notice) => focus::notice_line(notice),
             TracerEvent::Film(_)
             | TracerEvent::ExplorerFilm(_)
-            | TracerEvent::FocusPath(_)
-            | TracerEvent::FocusStep(_)
-            | TracerEvent::FocusGap(_)
-            | TracerEvent::Notice(_)
             | TracerEvent::SnapshotEnd
             | TracerEvent::Goodbye(_)
             | TracerEvent::Unknown => None,
@@ -107,8 +145,9 @@ impl Names {
     fn batch_line(&self, s: &Summary) -> String {
         let strategies: Vec<String> =
             s.strategies.iter().map(|(i, n)| format!("{} {n}", self.strategy(*i))).collect();
+        let last = s.last.map_or_else(String::new, |id| id.to_string());
         format!(
-            "batch {:>8}  {:>5} of {:>5} paths  {:>6} new vertices  {:>6} bytes  acceptance {:.3}  {}",
+            "batch {:>8}  {:>5} of {:>5} paths  {:>6} new vertices  {:>6} bytes  acceptance {:.3}  {}  last {last}",
             s.sequence,
             s.paths,
             s.origin.seen,
@@ -135,6 +174,7 @@ impl Names {
             "new_vertices": s.new_vertices,
             "bytes": s.bytes,
             "mean_acceptance": s.mean_acceptance,
+            "last": s.last.map(|id| id.to_string()),
             "strategies": strategies,
         })
     }
@@ -270,6 +310,8 @@ struct Summary {
     new_vertices: usize,
     bytes: usize,
     mean_acceptance: f64,
+    /// The last path, by which it can be asked for.
+    last: Option<PathId>,
     /// Paths a strategy, by index.
     strategies: Vec<(u8, usize)>,
 }
@@ -289,6 +331,7 @@ impl Summary {
             new_vertices: batch.vertices().kind.len(),
             bytes: batch.byte_len(),
             mean_acceptance: acceptance / batch.len().max(1) as f64,
+            last: batch.headers().last().map(|header| header.id),
             strategies: (0..=u8::MAX).zip(counts).filter(|(_, n)| *n > 0).collect(),
         }
     }

@@ -1,23 +1,25 @@
-//! The daemon's chains at work: rounds without end, with reports to the hub in between.
+//! The daemon's chains at work: rounds without end, with reports to the hub in between, and changes
+//! where the driver wants them.
+
+mod plant;
 
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Receiver;
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use common::{ChainTotals, FailureCount, FilmFrame, Statistics, StrategyStatistics};
-use tracing::{info, warn};
+use common::{ChainCommand, ChainTotals, FailureCount, FilmFrame, Statistics, StrategyStatistics};
+use tracing::warn;
 
-use crate::chain::{Ensemble, EnsembleSettings, StrategyCounts};
+use crate::chain::{Archive, Ensemble, EnsembleSettings, StrategyCounts};
 use crate::hub::Hub;
 use crate::path::Failure;
 use crate::scene::Scene;
+use crate::steering::Envelope;
+use plant::Plant;
 
-/// Mutations of all chains together in one round: about a tenth of a second of one core.
-const ROUND_MUTATIONS: u64 = 1 << 17;
-/// Steps of each chain that are shown in a round, while anyone looks.
-const WINDOW: u64 = 32;
 /// Time between two reports of statistics.
 const STATISTICS_INTERVAL: Duration = Duration::from_millis(500);
 /// Shortest time between two snapshots of the film.
@@ -33,13 +35,20 @@ pub struct Engine {
 }
 
 impl Engine {
-    /// Starts the chains of `scene` and publishes what they do.
-    pub fn start(scene: Arc<Scene>, settings: &EnsembleSettings, hub: Hub) -> io::Result<Self> {
+    /// Starts the chains of `scene`, publishes what they do, and follows `orders`. What is shown of
+    /// them is kept in the `archive`.
+    pub fn start(
+        scene: Arc<Scene>,
+        settings: &EnsembleSettings,
+        hub: Hub,
+        archive: Arc<Archive>,
+        orders: Receiver<Envelope<ChainCommand>>,
+    ) -> io::Result<Self> {
         let stop = Arc::new(AtomicBool::new(false));
         let (settings, stopped) = (*settings, Arc::clone(&stop));
         let thread = thread::Builder::new()
             .name("lvis-engine".to_owned())
-            .spawn(move || run(&scene, &settings, &hub, &stopped))?;
+            .spawn(move || Plant::new(&scene, &settings, &hub, &archive).run(&orders, &stopped))?;
         Ok(Self { stop, thread: Some(thread) })
     }
 }
@@ -55,36 +64,6 @@ impl Drop for Engine {
     }
 }
 
-fn run(scene: &Scene, settings: &EnsembleSettings, hub: &Hub, stop: &AtomicBool) {
-    for line in scene.features().switched_off() {
-        info!("{line}");
-    }
-    let mut ensemble = Ensemble::new(scene, settings, |_| ());
-    if ensemble.chain_count() == 0 {
-        warn!("no light reaches the film; the image stays black");
-        hub.publish_film(Arc::new(film_frame(scene, &ensemble)));
-        return;
-    }
-    let (b, error) = ensemble.normalization(scene);
-    info!("{} chains; mean luminance {b:.4} +- {error:.1e}", ensemble.chain_count());
-    if error > 0.01 * b {
-        warn!("the mean luminance is known to {:.1} % only", 100.0 * error / b);
-    }
-    for prospect in ensemble.prospects() {
-        info!("{prospect}");
-    }
-    let steps = (ROUND_MUTATIONS / ensemble.chain_count() as u64).max(1);
-    let mut reporter = Reporter::new(settings);
-    while !stop.load(Ordering::Relaxed) {
-        let window = hub.wants_paths().then_some(WINDOW);
-        let batches = ensemble.advance(scene, steps, window);
-        for batch in batches {
-            hub.publish_paths(batch);
-        }
-        reporter.report(scene, &ensemble, hub);
-    }
-}
-
 /// Decides when the film and the statistics are due.
 struct Reporter {
     threads: usize,
@@ -95,18 +74,20 @@ struct Reporter {
 }
 
 impl Reporter {
-    fn new(settings: &EnsembleSettings) -> Self {
+    /// A reporter of an epoch that begins now, after `steps` steps.
+    fn new(settings: &EnsembleSettings, steps: u64) -> Self {
         let now = Instant::now();
         Self {
             threads: settings.threads,
             started: now,
             statistics_at: now,
-            steps_at: 0,
+            steps_at: steps,
             film_at: None,
         }
     }
 
-    fn report(&mut self, scene: &Scene, ensemble: &Ensemble, hub: &Hub) {
+    /// Publishes what is due of an epoch.
+    fn report(&mut self, scene: &Scene, ensemble: &Ensemble, epoch: u32, hub: &Hub) {
         let now = Instant::now();
         if self.film_at.is_none_or(|at| now >= at) {
             hub.publish_film(Arc::new(film_frame(scene, ensemble)));
@@ -115,10 +96,11 @@ impl Reporter {
         }
         let interval = now - self.statistics_at;
         if interval >= STATISTICS_INTERVAL {
-            let steps = ensemble.steps() - self.steps_at;
+            let steps = ensemble.steps().saturating_sub(self.steps_at);
             let rate = steps as f64 / interval.as_secs_f64();
             let elapsed = now - self.started;
             let mut statistics = statistics(scene, ensemble);
+            statistics.epoch = epoch;
             statistics.threads = self.threads as u32;
             statistics.elapsed_seconds = elapsed.as_secs_f64();
             statistics.mutations_per_second = rate;

@@ -1,0 +1,230 @@
+//! The chains with all that the driver may change of them.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::Duration;
+
+use common::{Author, ChainCommand, ChainState, OrderReply, StrategyId};
+use tracing::{info, warn};
+
+use super::{Reporter, film_frame};
+use crate::chain::{Archive, Ensemble, EnsembleSettings, Round};
+use crate::hub::Hub;
+use crate::scene::Scene;
+use crate::steering::Envelope;
+
+/// Mutations of all chains together in one round: about a tenth of a second of one core.
+const ROUND_MUTATIONS: u64 = 1 << 17;
+/// Steps of each chain that are shown in a round, while anyone looks.
+const WINDOW: u64 = 32;
+/// How long paused chains wait before they see whether they are to end.
+const PAUSE: Duration = Duration::from_millis(100);
+/// Samples drawn at most for a precision that the driver asks for.
+const MOST_SAMPLES: u64 = 1 << 22;
+
+/// The chains of a scene.
+pub(super) struct Plant<'a> {
+    scene: &'a Scene,
+    settings: EnsembleSettings,
+    hub: &'a Hub,
+    archive: &'a Archive,
+    ensemble: Ensemble,
+    reporter: Reporter,
+    epoch: u32,
+    running: bool,
+    /// What was changed last, and by whom.
+    change: (String, Option<Author>),
+    /// Viewers have not been told of a change yet.
+    untold: bool,
+}
+
+impl<'a> Plant<'a> {
+    /// Seeds the chains.
+    pub(super) fn new(
+        scene: &'a Scene,
+        settings: &EnsembleSettings,
+        hub: &'a Hub,
+        archive: &'a Archive,
+    ) -> Self {
+        for line in scene.features().switched_off() {
+            info!("{line}");
+        }
+        let ensemble = Ensemble::new(scene, settings, |_| ());
+        describe(scene, &ensemble);
+        Self {
+            reporter: Reporter::new(settings, 0),
+            scene,
+            settings: *settings,
+            hub,
+            archive,
+            ensemble,
+            epoch: 0,
+            running: true,
+            change: (String::new(), None),
+            untold: true,
+        }
+    }
+
+    /// Runs the chains until `stop`.
+    pub(super) fn run(&mut self, orders: &Receiver<Envelope<ChainCommand>>, stop: &AtomicBool) {
+        if self.ensemble.chain_count() == 0 {
+            self.hub.publish_film(Arc::new(film_frame(self.scene, &self.ensemble)));
+        }
+        while !stop.load(Ordering::Relaxed) {
+            self.tell();
+            let works = self.running && self.ensemble.chain_count() > 0;
+            // Chains that run look for orders between two rounds, and others wait for them.
+            let wait = if works { Duration::ZERO } else { PAUSE };
+            match orders.recv_timeout(wait) {
+                Ok(order) => {
+                    self.follow(order);
+                    continue;
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                // Nobody will ever change anything.
+                Err(RecvTimeoutError::Disconnected) if works => {}
+                Err(RecvTimeoutError::Disconnected) => std::thread::sleep(PAUSE),
+            }
+            if works {
+                self.round();
+            }
+        }
+    }
+
+    fn round(&mut self) {
+        let steps = (ROUND_MUTATIONS / self.ensemble.chain_count() as u64).max(1);
+        let window = self.hub.wants_paths().then_some(WINDOW);
+        let batches = self.ensemble.advance(self.scene, steps, window);
+        if window.is_some() {
+            // Kept before it is shown, so that whatever is picked can be found.
+            let (normalization, _) = self.ensemble.normalization(self.scene);
+            let checkpoints = self.ensemble.take_checkpoints();
+            let mixture = self.ensemble.shared_mixture();
+            self.archive.put(Round::new(mixture, normalization, WINDOW.min(steps), checkpoints));
+        }
+        for batch in batches {
+            self.hub.publish_paths(batch);
+        }
+        self.reporter.report(self.scene, &self.ensemble, self.epoch, self.hub);
+    }
+
+    fn follow(&mut self, order: Envelope<ChainCommand>) {
+        let Envelope { author, request, command } = order;
+        let session = author.session;
+        let error = match self.obey(command, &author) {
+            Ok(change) => {
+                info!(session, viewer = author.name, "{change}");
+                self.change = (change, Some(author));
+                self.untold = true;
+                None
+            }
+            Err(error) => Some(error),
+        };
+        self.hub.publish_reply(session, OrderReply { request, error });
+    }
+
+    /// Does what is asked for, and says in a few words what that was.
+    fn obey(&mut self, command: ChainCommand, author: &Author) -> Result<String, String> {
+        match command {
+            ChainCommand::Pause => {
+                self.running = false;
+                Ok("paused the chains".to_owned())
+            }
+            ChainCommand::Resume => {
+                self.running = true;
+                Ok("let the chains go on".to_owned())
+            }
+            ChainCommand::SetWeight { strategy, weight } => self.set_weight(strategy, weight),
+            ChainCommand::SetPrecision(precision) => {
+                let usual = EnsembleSettings::default();
+                let more = (usual.precision / precision).powi(2).max(1.0);
+                let samples = usual.bootstrap_samples as f64 * more;
+                self.settings.precision = precision;
+                self.settings.bootstrap_samples = (samples as u64).min(MOST_SAMPLES);
+                Ok(self.restart(format!("started anew, with b known to {precision}"), author))
+            }
+            ChainCommand::Restart { seed } => {
+                self.settings.seed = seed;
+                Ok(self.restart(format!("started anew with seed {seed}"), author))
+            }
+        }
+    }
+
+    fn set_weight(&mut self, strategy: StrategyId, weight: f64) -> Result<String, String> {
+        let names = self.ensemble.mixture().names();
+        let mut weights = self.ensemble.mixture().weights();
+        let index = usize::from(strategy.0);
+        let (Some(slot), Some(name)) = (weights.get_mut(index), names.get(index)) else {
+            let all: Vec<_> = names.iter().enumerate().map(|(i, n)| format!("{i} {n}")).collect();
+            return Err(format!(
+                "no strategy has the number {index}; there are {}",
+                all.join(", ")
+            ));
+        };
+        *slot = weight;
+        if !weights.iter().any(|&weight| weight > 0.0) {
+            return Err("no strategy would be left; give another one a weight first".to_owned());
+        }
+        self.epoch += 1;
+        self.ensemble.begin_epoch(self.epoch, &weights);
+        self.reporter = Reporter::new(&self.settings, self.ensemble.steps());
+        Ok(format!("set the weight of {name} to {weight}"))
+    }
+
+    /// Starts anew with the settings as they are now. That takes a moment, and everyone hears why.
+    fn restart(&mut self, change: String, author: &Author) -> String {
+        let state = ChainState {
+            running: false,
+            change: "starts anew".to_owned(),
+            by: Some(author.clone()),
+            ..self.state()
+        };
+        if !self.hub.publish_chains(state) {
+            warn!("viewers were not told that the chains start anew");
+        }
+        self.ensemble = Ensemble::new(self.scene, &self.settings, |_| ());
+        describe(self.scene, &self.ensemble);
+        self.epoch += 1;
+        let weights = self.ensemble.mixture().weights();
+        self.ensemble.begin_epoch(self.epoch, &weights);
+        self.reporter = Reporter::new(&self.settings, 0);
+        change
+    }
+
+    fn state(&self) -> ChainState {
+        let (change, by) = self.change.clone();
+        ChainState {
+            epoch: self.epoch,
+            running: self.running,
+            weights: self.ensemble.mixture().weights(),
+            seed: self.settings.seed,
+            precision: self.settings.precision,
+            change,
+            by,
+        }
+    }
+
+    /// Tells everybody of the last change; where the way is full, later.
+    fn tell(&mut self) {
+        if self.untold {
+            self.untold = !self.hub.publish_chains(self.state());
+        }
+    }
+}
+
+/// Writes in the log what the seeds have shown of a scene.
+fn describe(scene: &Scene, ensemble: &Ensemble) {
+    if ensemble.chain_count() == 0 {
+        warn!("no light reaches the film; the image stays black");
+        return;
+    }
+    let (b, error) = ensemble.normalization(scene);
+    info!("{} chains; mean luminance {b:.4} +- {error:.1e}", ensemble.chain_count());
+    if error > 0.01 * b {
+        warn!("the mean luminance is known to {:.1} % only", 100.0 * error / b);
+    }
+    for prospect in ensemble.prospects() {
+        info!("{prospect}");
+    }
+}
