@@ -6,6 +6,7 @@
 mod batch;
 mod camera;
 mod color;
+mod diagnostics;
 mod event;
 mod filter;
 mod id;
@@ -21,6 +22,7 @@ pub use batch::{
 };
 pub use camera::{Camera, CameraError, CameraPose};
 pub use color::Rgb;
+pub use diagnostics::{Diagnostics, TileGrid, TileMaps, UNKNOWN};
 pub use event::{Event, VertexKind};
 pub use filter::{
     Attribute, Comparison, CompiledFilter, Filter, FilterCounts, FilterError, FilterObject,

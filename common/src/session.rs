@@ -1,8 +1,10 @@
 //! What a tracer tells its viewers besides paths.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
-use crate::{Camera, FilterCounts, FilterError, Rgb, SceneFrame};
+use crate::{Camera, Diagnostics, FilterCounts, FilterError, Rgb, SceneFrame};
 
 /// What a viewer may do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -114,6 +116,9 @@ pub struct Statistics {
     pub queued_bytes: u64,
     /// What this viewer's filter saw since it was set.
     pub filter: FilterCounts,
+    /// How well the chains explore; absent until enough is known.
+    #[serde(skip)]
+    pub diagnostics: Option<Arc<Diagnostics>>,
 }
 
 /// The tracer's answer to a filter that a viewer set.

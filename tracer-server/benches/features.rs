@@ -1,5 +1,5 @@
-//! What it is worth to leave out what a scene does not contain: `cargo bench -p tracer-server
-//! --bench features`.
+//! What it is worth to leave out what a scene does not contain, and what it costs to look at every
+//! step for the diagnostics: `cargo bench -p tracer-server --bench features`.
 //!
 //! One thread, CPU time. Each feature is hidden in the scene where no light gets to it, so that the
 //! same chains run through general code; plain and general rounds alternate.
@@ -30,14 +30,18 @@ fn main() -> anyhow::Result<()> {
         "gain of leaving it out",
         "half of the pairs lie in",
     ]);
+    let monitored = decoy::cornell(256, None)?;
+    let mut compared = vec![("a look at every step", monitored, true)];
     for (name, _) in decoy::FEATURES {
-        let general = decoy::cornell(256, Some(name))?;
-        let pairs = pairs(&plain, &general);
+        compared.push((name, decoy::cornell(256, Some(name))?, false));
+    }
+    for (name, general, is_monitored) in &compared {
+        let pairs = pairs(&plain, general, *is_monitored);
         let mut gains: Vec<f64> = pairs.iter().map(|(a, b)| 100.0 * (a / b - 1.0)).collect();
         gains.sort_by(f64::total_cmp);
         let best = |rates: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(rates).fold(0.0, f64::max);
         table.add_row([
-            name.to_owned(),
+            (*name).to_owned(),
             format!("{:.3} M", best(&|pair| pair.0) / 1e6),
             format!("{:.3} M", best(&|pair| pair.1) / 1e6),
             format!("{:+.1} %", gains[PAIRS / 2]),
@@ -48,8 +52,8 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Mutations per CPU second of both scenes, in alternation.
-fn pairs(plain: &Scene, general: &Scene) -> Vec<(f64, f64)> {
+/// Mutations per CPU second of both scenes, in alternation; of the second one perhaps monitored.
+fn pairs(plain: &Scene, general: &Scene, is_monitored: bool) -> Vec<(f64, f64)> {
     let settings = EnsembleSettings {
         seed: 1,
         chains: 16,
@@ -59,6 +63,9 @@ fn pairs(plain: &Scene, general: &Scene) -> Vec<(f64, f64)> {
     };
     let ensemble = |scene| Ensemble::new(scene, &settings, |_| ());
     let (mut a, mut b) = (ensemble(plain), ensemble(general));
+    if is_monitored {
+        b.monitor();
+    }
     let rate = |ensemble: &mut Ensemble, scene: &Scene| {
         let start = ProcessTime::now();
         drop(ensemble.advance(scene, STEPS, None));

@@ -97,6 +97,11 @@ fn count(scene: &Scene, strategies: &StrategyOptions) -> (usize, u64) {
         .map(|(c, id)| Chain::new(ChainId(id), 3, c.current().clone(), ensemble.mixture()))
         .collect();
     assert_eq!(chains.len(), CHAINS as usize, "the scene has light");
+    // Looking at every step allocates nothing either.
+    let size = [scene.camera().width, scene.camera().height];
+    for chain in &mut chains {
+        chain.watch_every_step(size);
+    }
     let tracer = Tracer::new(scene);
     let mut film = Film::new(scene.camera().width, scene.camera().height);
     advance(&mut chains, (&tracer, &ensemble), &mut film, WARM_UP);

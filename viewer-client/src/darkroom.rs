@@ -55,7 +55,9 @@ impl Darkroom {
         if self.film.size() == [0, 0] {
             return Err("There is no image to save yet.".to_owned());
         }
-        let sources = Sources { film: &self.film, reference: self.reference.as_ref() };
+        let diagnostics = status.statistics.as_ref().and_then(|s| s.diagnostics.as_deref());
+        let reference = self.reference.as_ref();
+        let sources = Sources { film: &self.film, reference, diagnostics };
         let shown = imaging::develop(sources, look).unwrap_or_default();
         let metadata = metadata(&self.film, status);
         let (film, file) = (self.film.clone(), PathBuf::from(file));

@@ -32,6 +32,7 @@ pub mod store;
 #[cfg(test)]
 mod synthetic;
 pub mod theme;
+pub mod trends;
 pub mod watch;
 pub mod window;
 pub mod world;

@@ -6,6 +6,7 @@ use common::{FilterReply, Role, Statistics, Welcome};
 
 use crate::rates::{History, RateMeter};
 use crate::steering::Steering;
+use crate::trends::Trends;
 
 /// How the connection is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,6 +50,8 @@ pub struct Status {
     pub statistics: Option<Statistics>,
     /// Mutations a second over the last minutes.
     pub mutation_history: History,
+    /// How the chains do over time.
+    pub trends: Trends,
     /// Paths received.
     pub path_rate: RateMeter,
     /// Bytes of paths received.
@@ -73,6 +76,7 @@ impl Status {
             welcome: None,
             statistics: None,
             mutation_history: History::default(),
+            trends: Trends::default(),
             path_rate: RateMeter::default(),
             byte_rate: RateMeter::default(),
             reconnects: 0,
@@ -109,11 +113,13 @@ impl Status {
         self.filter = None;
         self.steering.focus.clear();
         self.mutation_history.clear();
+        self.trends.clear();
     }
 
     /// Takes new counts.
     pub fn statistics(&mut self, statistics: Statistics) {
         self.mutation_history.push(statistics.mutations_per_second as f32);
+        self.trends.push(&statistics);
         self.statistics = Some(statistics);
     }
 }

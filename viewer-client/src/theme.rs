@@ -34,6 +34,24 @@ pub fn strategy_color(index: usize) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
+/// Reasons of failure: muted, so that they are not taken for strategies, and apart in lightness.
+const REASONS: [[u8; 3]; 8] = [
+    [112, 112, 120],
+    [136, 204, 238],
+    [68, 130, 120],
+    [221, 204, 119],
+    [204, 102, 119],
+    [170, 130, 200],
+    [150, 110, 60],
+    [240, 240, 240],
+];
+
+/// The colour of a reason why proposals fail.
+pub fn reason_color(index: usize) -> Color32 {
+    let [r, g, b] = REASONS[index % REASONS.len()];
+    Color32::from_rgb(r, g, b)
+}
+
 /// From low to high on dark ground: blue to yellow, ever lighter, so that it also reads in grey and
 /// with any kind of colour vision.
 const RAMP_ON_DARK: [[u8; 3]; RAMP_SIZE] = [

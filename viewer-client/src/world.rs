@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use common::Diagnostics;
+
 use crate::camera::ViewCamera;
 use crate::film::Film;
 use crate::imaging::Reference;
@@ -32,6 +34,11 @@ pub struct World<'a> {
 }
 
 impl World<'_> {
+    /// How well the chains explore, as far as it is known.
+    pub fn diagnostics(&self) -> Option<&Diagnostics> {
+        self.status.statistics.as_ref()?.diagnostics.as_deref()
+    }
+
     /// The name of a strategy; seeds have none.
     pub fn strategy_name(&self, index: usize) -> &str {
         let names = self.status.welcome.as_ref().map(|w| w.strategies.as_slice());

@@ -6,6 +6,7 @@
 mod camera;
 mod check;
 mod column;
+mod diagnostics;
 mod error;
 mod film;
 mod filter;

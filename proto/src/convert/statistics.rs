@@ -1,5 +1,7 @@
 //! Statistics.
 
+use std::sync::Arc;
+
 use common::{ChainTotals, FailureCount, Statistics, StrategyStatistics};
 
 use super::{WireError, check};
@@ -22,6 +24,7 @@ impl From<&Statistics> for v1::Statistics {
             paths_dropped: s.paths_dropped,
             queued_bytes: s.queued_bytes,
             filter: Some((&s.filter).into()),
+            diagnostics: s.diagnostics.as_deref().map(Into::into),
         }
     }
 }
@@ -56,6 +59,10 @@ impl TryFrom<v1::Statistics> for Statistics {
             paths_dropped: wire.paths_dropped,
             queued_bytes: wire.queued_bytes,
             filter: wire.filter.unwrap_or_default().try_into()?,
+            diagnostics: wire
+                .diagnostics
+                .map(|diagnostics| diagnostics.try_into().map(Arc::new))
+                .transpose()?,
         })
     }
 }

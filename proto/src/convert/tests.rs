@@ -1,10 +1,12 @@
 //! Round trips, and what hostile peers may send.
 
+use std::sync::Arc;
+
 use common::{
-    BatchBuilder, BatchOrigin, Camera, CameraPose, ChainId, ChainTotals, Event, FailureCount,
-    FilmTile, FilterCounts, FilterError, FilterReply, Gap, MAX_FILTER_BYTES, MaterialInfo,
-    PathBatch, PathHeader, PathId, Rgb, Role, SceneFrame, SceneMesh, Statistics, StrategyId,
-    StrategyStatistics, VertexKind, VertexRecord, Welcome,
+    BatchBuilder, BatchOrigin, Camera, CameraPose, ChainId, ChainTotals, Diagnostics, Event,
+    FailureCount, FilmTile, FilterCounts, FilterError, FilterReply, Gap, MAX_FILTER_BYTES,
+    MaterialInfo, PathBatch, PathHeader, PathId, Rgb, Role, SceneFrame, SceneMesh, Statistics,
+    StrategyId, StrategyStatistics, TileGrid, TileMaps, UNKNOWN, VertexKind, VertexRecord, Welcome,
 };
 use glam::DVec3;
 use proptest::prelude::*;
@@ -82,6 +84,26 @@ fn statistics() -> Statistics {
             energy_error: 0.001,
             conditions: vec![500, 20],
         },
+        diagnostics: Some(Arc::new(diagnostics())),
+    }
+}
+
+fn diagnostics() -> Diagnostics {
+    let map = |value: f32| vec![value, UNKNOWN, 0.5, 0.25, 1.0, 0.0];
+    Diagnostics {
+        grid: TileGrid { side: 16, columns: 3, rows: 2 },
+        maps: TileMaps {
+            acceptance: map(0.4),
+            dwell: map(12.0),
+            visits: map(1.5),
+            spread: map(0.02),
+            r_hat: map(1.01),
+        },
+        autocorrelation: vec![0.9, 0.4, 0.01],
+        correlation_steps: 37.5,
+        effective_samples: 1e6,
+        r_hat: 1.004,
+        longest: None,
     }
 }
 

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 use std::thread;
 
-use common::{ChainId, PathBatch};
+use common::{ChainId, Diagnostics, PathBatch};
 
+use super::diagnose::diagnose;
 use super::{
     Bootstrap, Chain, ChainStatistics, Checkpoint, PilotSettings, Prospect, Watch, explore,
 };
@@ -157,6 +158,19 @@ impl Ensemble {
         self.steps
     }
 
+    /// Has every step of every chain looked at from now on, for [`Ensemble::diagnostics`].
+    pub fn monitor(&mut self) {
+        for lane in &mut self.lanes {
+            let size = [lane.film.width(), lane.film.height()];
+            lane.chains.iter_mut().for_each(|chain| chain.watch_every_step(size));
+        }
+    }
+
+    /// How well the chains explore; `None` without [`Ensemble::monitor`] or steps.
+    pub fn diagnostics(&self) -> Option<Diagnostics> {
+        diagnose(self.chains())
+    }
+
     /// Every chain takes `steps` steps. With a `window`, the states that each chain passes through
     /// in its first `window` steps are returned, in the order of the lanes.
     pub fn advance(&mut self, scene: &Scene, steps: u64, window: Option<u64>) -> Vec<PathBatch> {
@@ -231,6 +245,7 @@ impl Lane {
                 chain.step(&scene, mixture, &mut self.film);
             }
             chain.flush(&mut self.film);
+            chain.settle();
         }
         self.rays.add(&scene);
         watch.map_or_else(Vec::new, Watch::finish)

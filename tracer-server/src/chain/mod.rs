@@ -1,9 +1,12 @@
 //! Markov chains over paths.
 
 mod archive;
+mod blocks;
 mod bootstrap;
 mod checkpoint;
+mod diagnose;
 mod ensemble;
+mod monitor;
 mod pilot;
 mod pool;
 mod statistics;
@@ -25,6 +28,8 @@ pub use pilot::{PilotSettings, Prospect, explore};
 pub use pool::Pool;
 pub use statistics::{ChainStatistics, StrategyCounts};
 pub use watch::Watch;
+
+use monitor::Monitor;
 
 /// What became of one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,6 +77,8 @@ pub struct Chain {
     arrival: (u64, f64, StrategyId),
     trial: Option<Trial>,
     statistics: ChainStatistics,
+    /// Who looks at every step, if anyone does.
+    monitor: Option<Box<Monitor>>,
 }
 
 /// The last proposal of a chain, looked at closely.
@@ -113,6 +120,7 @@ impl Chain {
             arrival: (0, 1.0, PathHeader::NO_STRATEGY),
             trial: None,
             statistics: ChainStatistics::new(mixture.len()),
+            monitor: None,
         }
     }
 
@@ -124,6 +132,25 @@ impl Chain {
         self.arrival = (0, 1.0, PathHeader::NO_STRATEGY);
         self.mixture_total = mixture.total(&self.current);
         self.statistics = ChainStatistics::new(mixture.len());
+        if let Some(monitor) = &mut self.monitor {
+            monitor.begin(&self.current);
+        }
+    }
+
+    /// Has every step from now on looked at, for [`Ensemble::diagnostics`]. The chain takes the same
+    /// steps as without; `size` is that of the film.
+    pub fn watch_every_step(&mut self, size: [u32; 2]) {
+        self.monitor = Some(Box::new(Monitor::new(size, &self.current)));
+    }
+
+    /// Who looks at every step.
+    fn monitor(&self) -> Option<&Monitor> {
+        self.monitor.as_deref()
+    }
+
+    /// Steps since the chain came to its current path.
+    fn stay(&self) -> u64 {
+        self.steps - self.arrival.0
     }
 
     /// Which chain this is.
@@ -172,6 +199,7 @@ impl Chain {
         let chosen = mixture.choose(&self.current, self.mixture_total, &mut self.rng);
         let Some(strategy) = chosen else {
             self.pending += 1.0;
+            self.look(0.0);
             let outcome = Outcome::Failed(Failure::NoSubpath);
             return Step { strategy: 0, acceptance: 0.0, outcome };
         };
@@ -192,6 +220,7 @@ impl Chain {
 
     fn fail(&mut self, strategy: usize, failure: Failure) -> Step {
         self.pending += 1.0;
+        self.look(0.0);
         Step { strategy, acceptance: 0.0, outcome: Outcome::Failed(failure) }
     }
 
@@ -210,11 +239,13 @@ impl Chain {
         self.pending += 1.0 - a;
         if a > 0.0 && self.rng.uniform() < a {
             self.flush(film);
+            self.depart(a);
             std::mem::swap(&mut self.current, &mut self.proposal);
             self.pending = a;
             self.mixture_total = total;
-            self.statistics.leave(self.steps - self.arrival.0);
+            self.statistics.leave(self.stay());
             self.arrival = (self.steps, a, StrategyId(strategy as u8));
+            self.arrive();
             let Proposal { kept_light, kept_eye, .. } = *proposal;
             let outcome = Outcome::Accepted { kept_light, kept_eye };
             return Step { strategy, acceptance: a, outcome };
@@ -222,6 +253,7 @@ impl Chain {
         if a > 0.0 {
             film.splat(self.proposal.pixel(), self.proposal.unit_color() * a);
         }
+        self.look(a);
         Step { strategy, acceptance: a, outcome: Outcome::Rejected }
     }
 
@@ -287,6 +319,42 @@ impl Chain {
             Outcome::Rejected
         };
         Step { strategy, acceptance, outcome }
+    }
+
+    /// Shows the monitor a step that stays, after a proposal of probability `acceptance`.
+    #[inline]
+    fn look(&mut self, acceptance: f64) {
+        if let Some(monitor) = &mut self.monitor {
+            monitor.propose(acceptance);
+            monitor.step();
+        }
+    }
+
+    /// Shows the monitor that the current path is about to be left.
+    #[inline]
+    fn depart(&mut self, acceptance: f64) {
+        if let Some(mut monitor) = self.monitor.take() {
+            monitor.propose(acceptance);
+            monitor.settle(self);
+            self.monitor = Some(monitor);
+        }
+    }
+
+    /// Shows the monitor a new current path, at which the step ends.
+    #[inline]
+    fn arrive(&mut self) {
+        if let Some(monitor) = &mut self.monitor {
+            monitor.arrive(&self.current);
+            monitor.step();
+        }
+    }
+
+    /// Brings the monitor's tables up to date.
+    fn settle(&mut self) {
+        if let Some(mut monitor) = self.monitor.take() {
+            monitor.settle(self);
+            self.monitor = Some(monitor);
+        }
     }
 
     /// Adds the current path's gathered weight to the film.

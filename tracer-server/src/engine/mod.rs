@@ -135,6 +135,7 @@ fn statistics(scene: &Scene, ensemble: &Ensemble) -> Statistics {
         strategies: counts.strategies.iter().map(strategy_statistics).collect(),
         normalization,
         normalization_error,
+        diagnostics: ensemble.diagnostics().map(Arc::new),
         memory_bytes: resident_memory(),
         ..Statistics::default()
     }

@@ -50,8 +50,7 @@ impl<'a> Plant<'a> {
         for line in scene.features().switched_off() {
             info!("{line}");
         }
-        let ensemble = Ensemble::new(scene, settings, |_| ());
-        describe(scene, &ensemble);
+        let ensemble = seeded(scene, settings);
         Self {
             reporter: Reporter::new(settings, 0),
             scene,
@@ -183,8 +182,7 @@ impl<'a> Plant<'a> {
         if !self.hub.publish_chains(state) {
             warn!("viewers were not told that the chains start anew");
         }
-        self.ensemble = Ensemble::new(self.scene, &self.settings, |_| ());
-        describe(self.scene, &self.ensemble);
+        self.ensemble = seeded(self.scene, &self.settings);
         self.epoch += 1;
         let weights = self.ensemble.mixture().weights();
         self.ensemble.begin_epoch(self.epoch, &weights);
@@ -211,6 +209,14 @@ impl<'a> Plant<'a> {
             self.untold = !self.hub.publish_chains(self.state());
         }
     }
+}
+
+/// Chains of which every step is looked at.
+fn seeded(scene: &Scene, settings: &EnsembleSettings) -> Ensemble {
+    let mut ensemble = Ensemble::new(scene, settings, |_| ());
+    ensemble.monitor();
+    describe(scene, &ensemble);
+    ensemble
 }
 
 /// Writes in the log what the seeds have shown of a scene.

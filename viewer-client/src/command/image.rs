@@ -46,15 +46,43 @@ pub enum Layer {
     Difference,
     /// The relative squared error of each pixel against the reference.
     Error,
+    /// Mean acceptance probability of proposals made from here.
+    Acceptance,
+    /// Mean stay of a chain at a path that ends here.
+    Dwell,
+    /// How often chains came here, against the mean.
+    Visits,
+    /// Relative standard error, from how chains differ.
+    Spread,
+    /// How far chains disagree.
+    Disagreement,
 }
 
 impl Layer {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Image, Self::Reference, Self::Difference, Self::Error];
+    pub const ALL: [Self; 9] = [
+        Self::Image,
+        Self::Reference,
+        Self::Difference,
+        Self::Error,
+        Self::Acceptance,
+        Self::Dwell,
+        Self::Visits,
+        Self::Spread,
+        Self::Disagreement,
+    ];
 
     /// True where there is nothing to show without a reference.
     pub fn compares(self) -> bool {
         matches!(self, Self::Reference | Self::Difference | Self::Error)
+    }
+
+    /// True for what the chains' diagnostics tell.
+    pub fn is_map(self) -> bool {
+        matches!(
+            self,
+            Self::Acceptance | Self::Dwell | Self::Visits | Self::Spread | Self::Disagreement
+        )
     }
 }
 
@@ -65,6 +93,11 @@ impl fmt::Display for Layer {
             Self::Reference => "reference",
             Self::Difference => "difference",
             Self::Error => "error",
+            Self::Acceptance => "acceptance",
+            Self::Dwell => "dwell",
+            Self::Visits => "visits",
+            Self::Spread => "spread",
+            Self::Disagreement => "disagreement",
         })
     }
 }
@@ -102,7 +135,10 @@ pub(super) const FORMS: &[Form] = &[
     ("image zoom FACTOR", "screen points a film pixel"),
     ("image look U V", "film point in the middle, from 0 to 1"),
     ("image fit", "as large as its panel"),
-    ("image show LAYER", "image, reference, difference or error"),
+    (
+        "image show LAYER",
+        "image, reference, difference, error, acceptance, dwell, visits, spread, disagreement",
+    ),
     ("image tone srgb|gamma|false", "how light becomes colour"),
     ("image gamma X", "exponent of the tone `gamma` (0.5 to 4)"),
     ("image reference FILE.exr", "compare with an image"),

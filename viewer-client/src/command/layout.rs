@@ -27,11 +27,14 @@ pub enum PanelName {
     Image,
     /// Counts and rates.
     Statistics,
+    /// Whether the chains can be believed.
+    Diagnostics,
 }
 
 impl PanelName {
     /// All of them, from the left of the window to the right.
-    pub const ALL: [Self; 4] = [Self::Cloud, Self::Scene, Self::Image, Self::Statistics];
+    pub const ALL: [Self; 5] =
+        [Self::Cloud, Self::Scene, Self::Image, Self::Statistics, Self::Diagnostics];
 
     /// The heading.
     pub fn title(self) -> &'static str {
@@ -40,6 +43,7 @@ impl PanelName {
             Self::Scene => "Scene",
             Self::Image => "Image",
             Self::Statistics => "Statistics",
+            Self::Diagnostics => "Chains",
         }
     }
 }
@@ -51,6 +55,7 @@ impl fmt::Display for PanelName {
             Self::Scene => "scene",
             Self::Image => "image",
             Self::Statistics => "statistics",
+            Self::Diagnostics => "diagnostics",
         })
     }
 }
@@ -82,7 +87,7 @@ impl fmt::Display for ThemeName {
 }
 
 pub(super) const FORMS: &[Form] = &[
-    ("panel cloud|scene|image|statistics on|off|toggle", "open or close a panel"),
+    ("panel NAME on|off|toggle", "cloud, scene, image, statistics, diagnostics: open or close it"),
     ("theme dark|light|toggle", "colours of the interface"),
     ("help on|off|toggle", "the sheet of keys"),
 ];

@@ -1,6 +1,6 @@
 //! From numbers to the colours on screen.
 
-use common::Rgb;
+use common::{Diagnostics, Rgb};
 
 use super::Reference;
 use crate::command::{Layer, ToneCurve};
@@ -40,6 +40,14 @@ const DECADES: f32 = 4.0;
 const BRIGHTEST: f32 = 10.0;
 /// The relative squared errors at the ends of their ramp.
 const ERRORS: [f32; 2] = [1e-4, 10.0];
+/// Mean stays at the ends of their ramp, in steps.
+const DWELLS: [f32; 2] = [1.0, 1000.0];
+/// Arrivals over the mean at the ends of their ramp.
+const VISITS: [f32; 2] = [0.01, 100.0];
+/// Relative standard errors at the ends of their ramp.
+const SPREADS: [f32; 2] = [1e-3, 1.0];
+/// R-hat less one at the ends of its ramp.
+const EXCESSES: [f32; 2] = [1e-3, 1.0];
 /// Colours of a legend.
 pub const BAND: usize = 64;
 
@@ -50,6 +58,8 @@ pub struct Sources<'a> {
     pub film: &'a Film,
     /// What it is compared with.
     pub reference: Option<&'a Reference>,
+    /// What the chains tell of parts of the film.
+    pub diagnostics: Option<&'a Diagnostics>,
 }
 
 /// A series of colours.
@@ -113,6 +123,45 @@ pub fn develop(sources: Sources<'_>, look: &ImageSettings) -> Option<Vec<u8>> {
             let color = |e: f64| ramp_color(Ramp::Sequential, logarithmic(e as f32, ERRORS));
             Some(errors.into_iter().flat_map(color).collect())
         }
+        Layer::Acceptance | Layer::Dwell | Layer::Visits | Layer::Spread | Layer::Disagreement => {
+            Some(map(film.size(), sources.diagnostics?, look.layer))
+        }
+    }
+}
+
+/// A map as pixels: each has the colour of its tile.
+fn map([width, height]: [usize; 2], diagnostics: &Diagnostics, layer: Layer) -> Vec<u8> {
+    let values = map_values(diagnostics, layer);
+    let colors: Vec<[u8; 3]> =
+        values.iter().map(|&v| ramp_color(Ramp::Sequential, map_place(layer, v))).collect();
+    let grid = diagnostics.grid;
+    let pixels = (0..height as u32).flat_map(|y| (0..width as u32).map(move |x| (x, y)));
+    pixels.flat_map(|(x, y)| colors.get(grid.tile(x, y)).copied().unwrap_or(UNKNOWN)).collect()
+}
+
+/// The values of a map's tiles; empty for a layer that is none.
+pub fn map_values(diagnostics: &Diagnostics, layer: Layer) -> &[f32] {
+    match layer {
+        Layer::Acceptance => &diagnostics.maps.acceptance,
+        Layer::Dwell => &diagnostics.maps.dwell,
+        Layer::Visits => &diagnostics.maps.visits,
+        Layer::Spread => &diagnostics.maps.spread,
+        Layer::Disagreement => &diagnostics.maps.r_hat,
+        Layer::Image | Layer::Reference | Layer::Difference | Layer::Error => &[],
+    }
+}
+
+/// Where a value of a map lies on the ramp; NaN where it is not known.
+fn map_place(layer: Layer, value: f32) -> f32 {
+    if value < 0.0 {
+        return f32::NAN;
+    }
+    match layer {
+        Layer::Dwell => logarithmic(value, DWELLS),
+        Layer::Visits => logarithmic(value, VISITS),
+        Layer::Spread => logarithmic(value, SPREADS),
+        Layer::Disagreement => logarithmic((value - 1.0).max(EXCESSES[0]), EXCESSES),
+        _ => value,
     }
 }
 
@@ -141,6 +190,27 @@ pub fn legend(look: &ImageSettings) -> Option<Legend> {
             ramp: Ramp::Sequential,
             ticks: decades(ERRORS),
         }),
+        map => {
+            let (title, ticks) = map_legend(map);
+            let title = format!("{title}; grey where chains came too seldom");
+            Some(Legend { title, ramp: Ramp::Sequential, ticks })
+        }
+    }
+}
+
+fn map_legend(layer: Layer) -> (&'static str, Vec<String>) {
+    match layer {
+        Layer::Dwell => ("mean stay at a path, in steps", decades(DWELLS)),
+        Layer::Visits => ("arrivals, over the mean", decades(VISITS)),
+        Layer::Spread => ("relative standard error, from how chains differ", decades(SPREADS)),
+        Layer::Disagreement => {
+            let excess = [1e-3, 1e-2, 0.1, 1.0].map(|excess: f32| format::value(1.0 + excess));
+            ("R-hat between chains; above 1.1 they disagree", excess.into())
+        }
+        _ => {
+            let shares = ["0", "25 %", "50 %", "75 %", "100 %"];
+            ("mean acceptance probability", shares.map(str::to_owned).into())
+        }
     }
 }
 
@@ -196,7 +266,7 @@ mod tests {
             height: 2,
             pixels: vec![Rgb::grey(grey); 4],
         });
-        let sources = Sources { film, reference: reference.as_ref() };
+        let sources = Sources { film, reference: reference.as_ref(), diagnostics: None };
         develop(sources, look).map(|bytes| [bytes[0], bytes[1], bytes[2]])
     }
 
@@ -230,6 +300,33 @@ mod tests {
         assert!(at(0.9)[0] > at(0.9)[2], "brighter is orange: {:?}", at(0.9));
         assert!(at(0.1)[2] > at(0.1)[0], "darker is blue: {:?}", at(0.1));
         assert_eq!(first(&film(0.5), None, &look), None, "no reference, nothing to show");
+    }
+
+    #[test]
+    fn maps_colour_their_tiles() {
+        let diagnostics = Diagnostics {
+            grid: common::TileGrid { side: 1, columns: 2, rows: 2 },
+            maps: common::TileMaps {
+                acceptance: vec![1.0, 0.0, common::UNKNOWN, 0.5],
+                r_hat: vec![1.0, 2.0, 1.001, 50.0],
+                ..common::TileMaps::default()
+            },
+            ..Diagnostics::default()
+        };
+        let film = film(0.5);
+        let of = |layer| {
+            let look = ImageSettings { layer, ..ImageSettings::default() };
+            let sources = Sources { film: &film, reference: None, diagnostics: Some(&diagnostics) };
+            develop(sources, &look).expect("there are maps")
+        };
+        let colors = [SEQUENTIAL[8], SEQUENTIAL[0], UNKNOWN, SEQUENTIAL[4]].concat();
+        assert_eq!(of(Layer::Acceptance), colors, "four tiles");
+        let colors = [SEQUENTIAL[0], SEQUENTIAL[8], SEQUENTIAL[0], SEQUENTIAL[8]].concat();
+        assert_eq!(of(Layer::Disagreement), colors, "from agreement to twice the spread");
+        assert_eq!(of(Layer::Dwell), UNKNOWN.repeat(4), "a map that is missing");
+        let look = ImageSettings { layer: Layer::Visits, ..ImageSettings::default() };
+        let sources = Sources { film: &film, reference: None, diagnostics: None };
+        assert_eq!(develop(sources, &look), None, "no diagnostics, nothing to show");
     }
 
     #[test]

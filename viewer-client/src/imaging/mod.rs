@@ -7,6 +7,6 @@ mod exchange;
 mod tev;
 
 pub use compare::{Comparison, Reference};
-pub use develop::{BAND, Legend, Ramp, Sources, develop, legend, ramp_color};
+pub use develop::{BAND, Legend, Ramp, Sources, develop, legend, map_values, ramp_color};
 pub use exchange::{ExchangeError, read_exr, save};
 pub use tev::{TEV_ADDRESS, send_to_tev};

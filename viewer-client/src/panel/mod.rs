@@ -4,6 +4,7 @@
 //! [`PanelName`] where the user may close it.
 
 mod cloud;
+mod diagnostics;
 mod help;
 mod image;
 mod menu;
@@ -57,6 +58,7 @@ pub fn all() -> Vec<(Slot, Box<dyn Panel>)> {
         (Slot::Left(PanelName::Scene), Box::new(scene::Scene)),
         (Slot::Right(PanelName::Image), Box::new(image::ImagePanel::default())),
         (Slot::Right(PanelName::Statistics), Box::new(statistics::StatisticsPanel)),
+        (Slot::Right(PanelName::Diagnostics), Box::new(diagnostics::DiagnosticsPanel)),
         (Slot::Centre, Box::new(viewport::Viewport)),
         (Slot::Overlay, Box::new(notice::NoticePanel)),
         (Slot::Overlay, Box::new(help::Help)),

@@ -5,6 +5,7 @@ use std::time::Duration;
 use egui::{Align2, Area, Frame, Id, Label, Order, RichText, Stroke, Ui, vec2};
 
 use super::Panel;
+use super::widgets::dot;
 use crate::command::Command;
 use crate::status::Notice;
 use crate::theme;
@@ -33,12 +34,12 @@ impl Panel for NoticePanel {
 }
 
 fn word(ui: &mut Ui, notice: &Notice) {
-    let (mark, color) = if notice.is_bad { ("!", theme::BAD) } else { ("✔", theme::GOOD) };
+    let color = if notice.is_bad { theme::BAD } else { theme::GOOD };
     let frame = Frame::popup(ui.style()).inner_margin(10).stroke(Stroke::new(1.0, color));
     frame.show(ui, |ui| {
         ui.set_max_width(WIDTH);
         ui.horizontal(|ui| {
-            ui.label(RichText::new(mark).strong().color(color));
+            dot(ui, color);
             ui.add(Label::new(RichText::new(&notice.text).strong()).wrap());
         });
     });

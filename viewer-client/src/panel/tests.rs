@@ -84,6 +84,33 @@ fn statistics() -> Statistics {
     }
 }
 
+/// Statistics with diagnostics: chains agree but for one tile.
+fn diagnosed() -> Statistics {
+    let tiles = 20 * 15;
+    let mut r_hat = vec![1.002; tiles];
+    r_hat[41] = 1.37;
+    let diagnostics = common::Diagnostics {
+        grid: common::TileGrid { side: 2, columns: 20, rows: 15 },
+        maps: common::TileMaps {
+            acceptance: vec![0.3; tiles],
+            dwell: vec![8.0; tiles],
+            visits: vec![1.0; tiles],
+            spread: vec![0.01; tiles],
+            r_hat,
+        },
+        autocorrelation: vec![0.95, 0.7, 0.3, 0.1, 0.0],
+        correlation_steps: 40.0,
+        effective_samples: 25_000.0,
+        r_hat: 1.01,
+        longest: Some(crate::synthetic::batch(&[&[[1.0, 2.0, 3.0], [4.0, 6.0, 3.0]]])),
+    };
+    Statistics {
+        elapsed_seconds: 10.0,
+        diagnostics: Some(std::sync::Arc::new(diagnostics)),
+        ..statistics()
+    }
+}
+
 /// True when some label contains `text`.
 fn shows(harness: &Harness<'_, Stage>, text: &str) -> bool {
     harness.query_all_by_label_contains(text).next().is_some()
@@ -122,6 +149,9 @@ fn empty_panels_say_what_will_come() {
     let mut harness = Stage::new(image::ImagePanel::default()).harness();
     harness.run();
     assert!(shows(&harness, "No image yet"), "no image");
+    let mut harness = Stage::new(diagnostics::DiagnosticsPanel).harness();
+    harness.run();
+    assert!(shows(&harness, "No chains yet"), "no chains");
 }
 
 #[test]
@@ -225,6 +255,60 @@ fn the_image_is_compared_with_a_reference() {
     harness.state_mut().settings.image.layer = crate::command::Layer::Error;
     harness.run();
     assert!(shows(&harness, "relative squared error"), "its colours are explained");
+}
+
+#[test]
+fn chains_that_disagree_raise_an_alarm_that_leads_there() {
+    let mut stage = Stage::new(diagnostics::DiagnosticsPanel);
+    stage.film = image_stage(false).film;
+    stage.status.welcome(welcome());
+    stage.status.statistics(diagnosed());
+    let mut harness = stage.harness();
+    harness.run();
+    for text in [
+        "Chains disagree in 0.3 % of the image, R-hat to 1.37",
+        "25.0 k",
+        "steps for an independent one",
+        "bidirectional",
+        "off film",
+        "DDD",
+    ] {
+        assert!(shows(&harness, text), "`{text}` is missing");
+    }
+    for label in ["Show where", "Paths to the worst", "Acceptance", "Explore"] {
+        harness.get_by_label(label).click();
+        harness.run();
+    }
+    let said = harness.state().said.as_slice();
+    let [show, Command::Filter(crate::command::FilterCommand::Set(text)), map, explore] = said
+    else {
+        panic!("four clicks, not {said:?}");
+    };
+    let layer = |layer| Command::Image(ImageCommand::Show(layer));
+    assert_eq!(*show, layer(crate::command::Layer::Disagreement), "the map");
+    assert_eq!(*map, layer(crate::command::Layer::Acceptance), "another one");
+    let [u0, v0, ..] = crate::region::region_of(text).expect("a rectangle");
+    assert!((u0 - 2.0 / 40.0).abs() < 1e-9 && (v0 - 4.0 / 30.0).abs() < 1e-9, "{text}");
+    assert_eq!(explore.to_string(), "explorer seed 0.0.0", "the path where a chain stayed");
+}
+
+#[test]
+fn maps_wait_for_the_daemon() {
+    let mut stage = image_stage(false);
+    stage.settings.image.layer = crate::command::Layer::Dwell;
+    stage.status.statistics(diagnosed());
+    let mut harness = stage.harness();
+    harness.run();
+    assert!(shows(&harness, "mean stay at a path"), "its colours are explained");
+    let film = harness.get_by_role_and_label(WidgetRole::Image, "Film").rect();
+    harness.hover_at(film.center());
+    harness.run();
+    assert!(shows(&harness, "dwell") && shows(&harness, "8"), "the value under the cursor");
+    let mut harness = image_stage(false).harness();
+    harness.run();
+    harness.get_by_label("Dwell").click();
+    harness.run();
+    assert_eq!(harness.state().said, [], "there is no map yet");
 }
 
 #[test]

@@ -33,6 +33,8 @@ struct Shown {
     look: ImageSettings,
     /// Where the reference's pixels lie; another one lies elsewhere.
     reference: usize,
+    /// Where the diagnostics lie, if they are shown.
+    diagnostics: usize,
 }
 
 impl std::fmt::Debug for ImagePanel {
@@ -79,16 +81,18 @@ impl Panel for ImagePanel {
 impl ImagePanel {
     fn refresh(&mut self, ui: &Ui, world: &World<'_>) {
         let look = world.settings.image;
+        let diagnostics = world.diagnostics().filter(|_| look.layer.is_map());
         let wanted = Shown {
             revision: world.film.revision(),
             // Where one looks does not change what there is to see.
             look: ImageSettings { zoom: None, centre: [0.5; 2], ..look },
             reference: world.reference.map_or(0, |r| r.pixels.as_ptr().addr()),
+            diagnostics: diagnostics.map_or(0, |d| d.maps.r_hat.as_ptr().addr()),
         };
         if self.shown == Some(wanted) && self.texture.is_some() {
             return;
         }
-        let sources = Sources { film: world.film, reference: world.reference };
+        let sources = Sources { film: world.film, reference: world.reference, diagnostics };
         let plain = ImageSettings { layer: Layer::Image, ..look };
         let bytes = imaging::develop(sources, &look).or_else(|| imaging::develop(sources, &plain));
         let image = ColorImage::from_rgb(world.film.size(), &bytes.unwrap_or_default());
@@ -125,14 +129,19 @@ fn region_line(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
 fn layers(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         for layer in Layer::ALL {
-            let missing = layer.compares() && world.reference.is_none();
+            let missing = (layer.compares() && world.reference.is_none())
+                || (layer.is_map() && world.diagnostics().is_none());
             let label = capitalised(&layer.to_string());
             let chosen = world.settings.image.layer == layer;
             ui.add_enabled_ui(!missing, |ui| {
                 let button = ui
                     .selectable_label(chosen, label)
                     .on_hover_text(meaning(layer))
-                    .on_disabled_hover_text("Load a reference first: see Compare below");
+                    .on_disabled_hover_text(if layer.is_map() {
+                        "The daemon has not told yet how the chains do"
+                    } else {
+                        "Load a reference first: see Compare below"
+                    });
                 if button.clicked() {
                     commands.push(Command::Image(ImageCommand::Show(layer)));
                 }
@@ -142,12 +151,17 @@ fn layers(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
 }
 
 /// What a layer shows.
-fn meaning(layer: Layer) -> &'static str {
+pub(super) fn meaning(layer: Layer) -> &'static str {
     match layer {
         Layer::Image => "The progressive image",
         Layer::Reference => "The image to compare with",
         Layer::Difference => "Orange is brighter than the reference, blue darker",
         Layer::Error => "Where the image is still wrong, relative to the reference",
+        Layer::Acceptance => "Mean acceptance probability of proposals made from paths to here",
+        Layer::Dwell => "How long chains stay at a path to here, in steps",
+        Layer::Visits => "How often chains come here",
+        Layer::Spread => "Relative standard error of the light here, from how chains differ",
+        Layer::Disagreement => "R-hat: whether chains agree how much light comes here",
     }
 }
 

@@ -3,6 +3,8 @@
 use common::Rgb;
 use egui::{Color32, Grid, RichText, Ui};
 
+use crate::format;
+use crate::imaging;
 use crate::world::World;
 
 /// Letters of a value: a sign, five digits, a point and an exponent.
@@ -13,7 +15,8 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, hovered: Option<[usize; 2]>) 
     let pixel = hovered.and_then(|[x, y]| Some((x, y, world.film.pixel(x, y)?)));
     let Some((x, y, rgb)) = pixel else {
         let hint = "Point at a pixel for its values; click it, or drag a rectangle, for its paths.";
-        let lines = if world.reference.is_some() { 2 } else { 1 };
+        let has_map = world.settings.image.layer.is_map();
+        let lines = 1 + usize::from(world.reference.is_some()) + usize::from(has_map);
         let font = egui::TextStyle::Monospace.resolve(ui.style());
         let height = lines as f32 * (ui.fonts_mut(|f| f.row_height(&font)) + 3.0) + 14.0;
         ui.allocate_ui(egui::vec2(ui.available_width(), height), |ui| {
@@ -33,7 +36,21 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, hovered: Option<[usize; 2]>) 
         if let Some(reference) = reference {
             line(ui, "reference", reference);
         }
+        if let Some((name, value)) = map_value(world, x, y) {
+            ui.label(RichText::new(name).small().weak());
+            ui.label(RichText::new(value).monospace());
+            ui.end_row();
+        }
     });
+}
+
+/// What the map that is shown says of a pixel's tile.
+fn map_value(world: &World<'_>, x: usize, y: usize) -> Option<(String, String)> {
+    let (layer, diagnostics) = (world.settings.image.layer, world.diagnostics()?);
+    let tile = diagnostics.grid.tile(x as u32, y as u32);
+    let value = *imaging::map_values(diagnostics, layer).get(tile)?;
+    let text = if value < 0.0 { "unknown".to_owned() } else { format::value(value) };
+    Some((layer.to_string(), text))
 }
 
 fn channels(ui: &Ui) -> [(&'static str, Color32); 4] {

@@ -1,0 +1,140 @@
+//! What a chain's every step tells of how well it explores.
+//!
+//! A monitor draws no random numbers and changes nothing, so a monitored chain takes the same steps as
+//! one that is not. Its tables are written when a state is left, not at every step, and it allocates
+//! nothing after it was made.
+
+use common::{PathHeader, TileGrid, VertexRecord};
+
+use super::Chain;
+use super::blocks::Blocks;
+use crate::path::{MAX_VERTICES, Path};
+
+/// Most tiles that the film is divided into.
+const TILES: u32 = 1024;
+
+/// Sums over what happened at states that end in one tile of the film.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct TileCounts {
+    /// Steps that the chain stood there.
+    pub(super) steps: u64,
+    /// Arrivals.
+    pub(super) visits: u64,
+    /// Sum of the acceptance probabilities of the proposals made from there.
+    pub(super) acceptance: f64,
+}
+
+/// The state at which a chain stayed longest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct LongestStay {
+    /// What is known of the path; its dwell is the length of the stay so far.
+    pub(super) header: PathHeader,
+    /// The path.
+    pub(super) vertices: Vec<VertexRecord>,
+}
+
+/// Looks over one chain's shoulder.
+#[derive(Clone, Debug)]
+pub(super) struct Monitor {
+    grid: TileGrid,
+    /// Width and height of the film in pixels.
+    size: [u32; 2],
+    tiles: Vec<TileCounts>,
+    blocks: Blocks,
+    longest: LongestStay,
+    /// Tile and log luminance of the current state.
+    tile: usize,
+    log_luminance: f64,
+    /// Steps at the current state, and the sum of their acceptance probabilities, that are not in the
+    /// tables yet.
+    steps: u64,
+    acceptance: f64,
+}
+
+impl Monitor {
+    /// Begins to look at a chain in the state `current`, on a film of `size` pixels.
+    pub(super) fn new(size: [u32; 2], current: &Path) -> Self {
+        let [width, height] = size;
+        let grid = TileGrid::over(width, height, TILES);
+        let vertices = Vec::with_capacity(MAX_VERTICES);
+        let mut monitor = Self {
+            grid,
+            size,
+            tiles: vec![TileCounts::default(); grid.len()],
+            blocks: Blocks::default(),
+            longest: LongestStay { header: PathHeader::default(), vertices },
+            tile: 0,
+            log_luminance: 0.0,
+            steps: 0,
+            acceptance: 0.0,
+        };
+        monitor.arrive(current);
+        monitor
+    }
+
+    /// Forgets everything, and begins anew in the state `current`.
+    pub(super) fn begin(&mut self, current: &Path) {
+        *self = Self::new(self.size, current);
+    }
+
+    /// The chain has come to `path`.
+    #[inline]
+    pub(super) fn arrive(&mut self, path: &Path) {
+        let (pixel, width) = (path.pixel() as u32, self.size[0]);
+        self.tile = self.grid.tile(pixel % width, pixel / width);
+        self.log_luminance = -path.density_sum().ln();
+        self.tiles[self.tile].visits += 1;
+    }
+
+    /// A step has ended at the current state.
+    #[inline]
+    pub(super) fn step(&mut self) {
+        self.steps += 1;
+        self.blocks.push(self.log_luminance);
+    }
+
+    /// A proposal from the current state had this probability.
+    #[inline]
+    pub(super) fn propose(&mut self, acceptance: f64) {
+        self.acceptance += acceptance;
+    }
+
+    /// Puts what happened at the chain's current state into the tables.
+    pub(super) fn settle(&mut self, chain: &Chain) {
+        let counts = &mut self.tiles[self.tile];
+        counts.steps += self.steps;
+        counts.acceptance += self.acceptance;
+        (self.steps, self.acceptance) = (0, 0.0);
+        let dwell = u32::try_from(chain.stay()).unwrap_or(u32::MAX);
+        if dwell > self.longest.header.dwell {
+            self.longest.header = chain.header();
+            self.longest.header.dwell = dwell;
+            chain.current().record_into(&mut self.longest.vertices);
+        }
+    }
+
+    /// Width and height of the film in pixels.
+    pub(super) fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// The tiles.
+    pub(super) fn grid(&self) -> TileGrid {
+        self.grid
+    }
+
+    /// The sums of every tile.
+    pub(super) fn tiles(&self) -> &[TileCounts] {
+        &self.tiles
+    }
+
+    /// What the chain remembers of its log luminance.
+    pub(super) fn blocks(&self) -> &Blocks {
+        &self.blocks
+    }
+
+    /// Where the chain stayed longest.
+    pub(super) fn longest(&self) -> &LongestStay {
+        &self.longest
+    }
+}

@@ -1,0 +1,114 @@
+//! Curves: acceptance over time, and correlation against the number of steps.
+
+use common::Diagnostics;
+use egui::{Color32, Ui};
+use egui_plot::{GridMark, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, Points};
+
+use super::strategy_color;
+use crate::format;
+use crate::theme;
+use crate::world::World;
+
+/// Height of a plot in points.
+const HEIGHT: f32 = 118.0;
+/// Strategies before colours are used with dashes.
+const SOLID: usize = 4;
+
+/// A plot that only shows: no zoom, no drag.
+fn plot<'a>(name: &'static str) -> Plot<'a> {
+    Plot::new(name)
+        .height(HEIGHT)
+        .allow_zoom(false)
+        .allow_drag(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .allow_double_click_reset(false)
+        .show_background(false)
+        .set_margin_fraction(egui::vec2(0.02, 0.06))
+        .y_axis_min_width(30.0)
+}
+
+fn percent(mark: GridMark, _: &std::ops::RangeInclusive<f64>) -> String {
+    format!("{:.0} %", 100.0 * mark.value)
+}
+
+/// Mean acceptance probability of each strategy against seconds.
+pub(super) fn acceptance(ui: &mut Ui, world: &World<'_>) {
+    let trends = &world.status.trends;
+    let strategies = trends.readings().map(|r| r.acceptance.len()).max().unwrap_or(0);
+    let lines: Vec<(String, Vec<[f64; 2]>)> = (0..strategies)
+        .map(|index| {
+            let points = trends.readings().filter_map(|reading| {
+                let share = reading.acceptance.get(index).filter(|a| a.is_finite())?;
+                Some([reading.seconds, *share])
+            });
+            (world.strategy_name(index).to_owned(), points.collect())
+        })
+        .collect();
+    let label = |position: &HoverPosition<'_>| match position {
+        HoverPosition::NearDataPoint { plot_name, position, .. } => Some(format!(
+            "{plot_name}\n{:.1} % after {}",
+            100.0 * position.y,
+            format::duration(position.x)
+        )),
+        HoverPosition::Elsewhere { .. } => None,
+    };
+    plot("acceptance")
+        .include_y(0.0)
+        .y_axis_formatter(percent)
+        .x_axis_formatter(|mark, _| format::duration(mark.value))
+        .label_formatter(label)
+        .show(ui, |plot| {
+            for (index, (name, points)) in lines.into_iter().enumerate() {
+                let style =
+                    if index < SOLID { LineStyle::Solid } else { LineStyle::dashed_loose() };
+                let line = Line::new(name, PlotPoints::from(points));
+                plot.line(line.color(strategy_color(index)).width(1.6).style(style));
+            }
+        });
+}
+
+/// Correlation between neighbouring blocks of steps against their length, by powers of two.
+pub(super) fn memory(ui: &mut Ui, diagnostics: &Diagnostics) {
+    if diagnostics.autocorrelation.is_empty() {
+        ui.label("Too few steps, or a luminance that never changes.");
+        return;
+    }
+    let points: Vec<[f64; 2]> = (0..)
+        .zip(&diagnostics.autocorrelation)
+        .map(|(k, &r)| [f64::from(k), f64::from(r)])
+        .collect();
+    let label = |position: &HoverPosition<'_>| match position {
+        HoverPosition::NearDataPoint { position, .. } => Some(format!(
+            "{:.3} between the means of neighbouring {} steps",
+            position.y,
+            format::count(position.x.exp2())
+        )),
+        HoverPosition::Elsewhere { .. } => None,
+    };
+    let ink = ui.visuals().weak_text_color();
+    let dots: Vec<[f64; 2]> = points.clone();
+    plot("memory")
+        .include_y(0.0)
+        .include_y(1.0)
+        .x_grid_spacer(|input| {
+            let (low, high) = input.bounds;
+            let first = (low.ceil() as i32).max(0);
+            let mark = |k: i32| GridMark { value: f64::from(k), step_size: 4.0 };
+            (first..=high.floor() as i32).filter(|k| k % 4 == 0).map(mark).collect()
+        })
+        .x_axis_formatter(|mark, _| format::count(mark.value.exp2()))
+        .label_formatter(label)
+        .show(ui, |plot| {
+            plot.hline(HLine::new("", 0.0).color(ink).width(1.0));
+            let line = Line::new("memory", PlotPoints::from(points));
+            plot.line(line.color(theme::ACCENT).width(1.6));
+            let dots = Points::new("memory", PlotPoints::from(dots));
+            plot.points(dots.color(solid(theme::ACCENT)).radius(2.4));
+        });
+}
+
+fn solid(color: Color32) -> Color32 {
+    Color32::from_rgb(color.r(), color.g(), color.b())
+}

@@ -1,0 +1,54 @@
+//! The paths at which chains stayed longest.
+
+use common::{Diagnostics, ExplorerCommand, Order, PathHeader, PathId, Seed};
+use egui::{Grid, RichText, Ui};
+
+use crate::command::Command;
+use crate::format;
+use crate::store::class_name;
+use crate::world::World;
+
+/// Shows the longest stays.
+pub(super) fn show(
+    ui: &mut Ui,
+    world: &World<'_>,
+    diagnostics: &Diagnostics,
+    commands: &mut Vec<Command>,
+) {
+    let Some(batch) = &diagnostics.longest else {
+        ui.label("None yet.");
+        return;
+    };
+    Grid::new("stays").num_columns(5).spacing([10.0, 3.0]).show(ui, |ui| {
+        for (title, tip) in [
+            ("steps", "How long a chain stayed, every proposal rejected or failed"),
+            ("path", "Light, specular, diffuse, eye; from the light"),
+            ("made by", "The strategy that led there"),
+            ("chain", "Which chain"),
+        ] {
+            ui.label(RichText::new(title).small().weak()).on_hover_text(tip);
+        }
+        ui.end_row();
+        let mut reader = batch.reader();
+        while let Some(path) = reader.next() {
+            let header = path.header;
+            ui.label(RichText::new(format::count(f64::from(header.dwell))).monospace());
+            ui.label(RichText::new(class_name(path.vertices)).monospace());
+            let name = world.strategy_name(usize::from(header.strategy.0));
+            let seed = header.strategy == PathHeader::NO_STRATEGY;
+            ui.label(if seed { "the seed" } else { name });
+            ui.label(RichText::new(header.id.chain.0.to_string()).monospace());
+            jump(ui, header.id, commands);
+            ui.end_row();
+        }
+    });
+}
+
+/// Makes the path the explorer's, to see what becomes of its proposals.
+fn jump(ui: &mut Ui, id: PathId, commands: &mut Vec<Command>) {
+    let tip = "Watch proposals from this path: seeds the explorer with it";
+    if ui.small_button("Explore").on_hover_text(tip).clicked() {
+        let seed = ExplorerCommand::Seed(Seed::Path(id));
+        commands.push(Command::Order(Order::Explorer(seed)));
+    }
+}
