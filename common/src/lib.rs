@@ -29,7 +29,7 @@ pub use filter::{
     FilterScene, FilterTally, Leaf, LightPathExpression, MAX_FILTER_BYTES, MAX_LEAVES, Name, Named,
     Place, Selector, SelectorKind, VertexClass, VertexTest, Volume,
 };
-pub use id::{ChainId, MaterialId, PathId, StrategyId};
+pub use id::{ChainId, MaterialId, NoPathId, PathId, StrategyId};
 pub use mesh::{MaterialInfo, SceneFrame, SceneMesh};
 pub use metric::{Floor, mean_of_smallest, mean_ratio, relative_errors, relative_mse};
 pub use session::{

@@ -1,6 +1,6 @@
 //! The explorer: a chain that people seed and step, and every step of it.
 
-use crate::{Author, ChainId, PathHeader, PathId, StrategyId, VertexRecord};
+use crate::{Author, PathHeader, PathId, StrategyId, VertexRecord};
 
 /// Slowest and fastest play, in steps a second.
 pub const MIN_RATE: f32 = 0.05;
@@ -10,11 +10,6 @@ pub const MAX_RATE: f32 = 2000.0;
 pub const MAX_STEPS: u32 = 10_000;
 /// Most proposals of one fan.
 pub const MAX_FAN: u32 = 1000;
-
-impl ChainId {
-    /// The explorer, which is none of the chains that make the image.
-    pub const EXPLORER: Self = Self(u32::MAX);
-}
 
 /// Moves the explorer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,7 +118,7 @@ pub struct ExplorerState {
 /// The current path of the explorer: whole.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FocusPath {
-    /// All but the vertices. The chain is [`ChainId::EXPLORER`]; the weight is zero, since the path
+    /// All but the vertices. The chain is [`crate::ChainId::EXPLORER`]; the weight is zero, since the path
     /// stands for nothing in the image.
     pub header: PathHeader,
     /// From the light to the lens.

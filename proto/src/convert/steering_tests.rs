@@ -6,6 +6,7 @@ use common::{
     Notice, Order, OrderReply, Pace, PathHeader, PathId, Presence, RatioFactors, Role, Seed,
     SkipTo, StrategyId, StrategySet, VertexKind, VertexRecord,
 };
+use proptest::prelude::*;
 use prost::Message as _;
 use prost::bytes::Bytes;
 
@@ -216,4 +217,74 @@ fn hostile_steps_are_refused() {
     assert!(refused(long), "makes a path that is too long");
     let path = FocusPath { vertices: vertices(1), ..FocusPath::default() };
     assert!(FocusPath::try_from(v1::FocusPath::from(&path)).is_err(), "a path of one vertex");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    /// Bytes of good messages, some of them changed, cut off or repeated: refused or understood, and
+    /// what is understood holds together.
+    #[test]
+    fn damaged_steps_and_notices_never_panic(
+        which in 0..4_usize,
+        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..6),
+        cut in any::<prop::sample::Index>(),
+        repeats in any::<bool>(),
+    ) {
+        let state = ExplorerState { by: Some(author()), current: Some(id()), ..ExplorerState::default() };
+        let chains = ChainState { weights: vec![1.0; 7], by: Some(author()), ..ChainState::default() };
+        let event = match which {
+            0 => TracerEvent::FocusStep(step()),
+            1 => TracerEvent::FocusPath(FocusPath { vertices: vertices(4), ..FocusPath::default() }),
+            2 => TracerEvent::Notice(Notice::Explorer(state)),
+            _ => TracerEvent::Notice(Notice::Chains(chains)),
+        };
+        let mut bytes = v1::TracerMessage::from(&event).encode_to_vec();
+        for (place, value) in damage {
+            let place = place.index(bytes.len());
+            bytes[place] = value;
+        }
+        if repeats {
+            bytes.extend_from_within(..);
+        }
+        bytes.truncate(cut.index(2 * bytes.len()).max(bytes.len() / 2));
+        let read = v1::TracerMessage::decode(bytes.as_slice()).map(TracerEvent::try_from);
+        if let Ok(Ok(TracerEvent::FocusStep(step))) = read {
+            prop_assert!(step.kept_light + step.kept_eye <= step.length);
+            if let Some(path) = step.proposal(&vertices(step.length as u32)) {
+                prop_assert!((2..=65).contains(&path.len()), "a path of {}", path.len());
+            }
+        }
+    }
+
+    #[test]
+    fn damaged_orders_never_panic(
+        which in 0..4_usize,
+        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..6),
+    ) {
+        let order = match which {
+            0 => Order::Explorer(ExplorerCommand::Seed(Seed::Path(id()))),
+            1 => Order::Explorer(ExplorerCommand::Play(2.5)),
+            2 => Order::Chains(ChainCommand::SetWeight { strategy: StrategyId(2), weight: 0.5 }),
+            _ => Order::Lease(LeaseRequest::HandOver(3)),
+        };
+        let order = ViewerEvent::Order(NumberedOrder { request: 1, order: Some(order) });
+        let mut bytes = v1::ViewerMessage::from(order).encode_to_vec();
+        for (place, value) in damage {
+            let place = place.index(bytes.len());
+            bytes[place] = value;
+        }
+        let read = v1::ViewerMessage::decode(bytes.as_slice()).map(ViewerEvent::try_from);
+        if let Ok(Ok(ViewerEvent::Order(NumberedOrder { order: Some(order), .. }))) = read {
+            let sound = match order {
+                Order::Explorer(ExplorerCommand::Play(rate)) => (0.05..=2000.0).contains(&rate),
+                Order::Explorer(ExplorerCommand::Step(count)) => (1..=10_000).contains(&count),
+                Order::Explorer(ExplorerCommand::Fan { count, .. }) => (1..=1000).contains(&count),
+                Order::Chains(ChainCommand::SetWeight { weight, .. }) => weight.is_finite(),
+                Order::Chains(ChainCommand::SetPrecision(precision)) => precision > 0.0,
+                _ => true,
+            };
+            prop_assert!(sound, "{order:?}");
+        }
+    }
 }

@@ -67,23 +67,35 @@ impl Drop for Engine {
 /// Decides when the film and the statistics are due.
 struct Reporter {
     threads: usize,
+    /// When the epoch began.
     started: Instant,
+    /// When statistics were published last.
     statistics_at: Instant,
+    /// Since when steps are counted for the rate, and how many there were then.
+    counted_at: Instant,
     steps_at: u64,
     film_at: Option<Instant>,
 }
 
 impl Reporter {
-    /// A reporter of an epoch that begins now, after `steps` steps.
-    fn new(settings: &EnsembleSettings, steps: u64) -> Self {
+    /// A reporter of chains that begin now.
+    fn new(settings: &EnsembleSettings) -> Self {
         let now = Instant::now();
         Self {
             threads: settings.threads,
             started: now,
             statistics_at: now,
-            steps_at: steps,
+            counted_at: now,
+            steps_at: 0,
             film_at: None,
         }
+    }
+
+    /// Another epoch begins, after `steps` steps on the film. Reports keep their pace.
+    fn begin_epoch(&mut self, steps: u64) {
+        let now = Instant::now();
+        (self.started, self.counted_at, self.steps_at) = (now, now, steps);
+        self.film_at = None;
     }
 
     /// Publishes what is due of an epoch.
@@ -94,10 +106,10 @@ impl Reporter {
             let rest = FILM_INTERVAL.max(now.elapsed() * FILM_COST);
             self.film_at = Some(now + rest);
         }
-        let interval = now - self.statistics_at;
-        if interval >= STATISTICS_INTERVAL {
+        if now - self.statistics_at >= STATISTICS_INTERVAL {
+            let interval = now - self.counted_at;
             let steps = ensemble.steps().saturating_sub(self.steps_at);
-            let rate = steps as f64 / interval.as_secs_f64();
+            let rate = steps as f64 / interval.as_secs_f64().max(f64::MIN_POSITIVE);
             let elapsed = now - self.started;
             let mut statistics = statistics(scene, ensemble);
             statistics.epoch = epoch;
@@ -106,6 +118,7 @@ impl Reporter {
             statistics.mutations_per_second = rate;
             hub.publish_statistics(Arc::new(statistics));
             self.statistics_at = now;
+            self.counted_at = now;
             self.steps_at = ensemble.steps();
         }
     }

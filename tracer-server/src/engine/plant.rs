@@ -52,7 +52,7 @@ impl<'a> Plant<'a> {
         }
         let ensemble = seeded(scene, settings);
         Self {
-            reporter: Reporter::new(settings, 0),
+            reporter: Reporter::new(settings),
             scene,
             settings: *settings,
             hub,
@@ -167,7 +167,7 @@ impl<'a> Plant<'a> {
         }
         self.epoch += 1;
         self.ensemble.begin_epoch(self.epoch, &weights);
-        self.reporter = Reporter::new(&self.settings, self.ensemble.steps());
+        self.reporter.begin_epoch(self.ensemble.steps());
         Ok(format!("set the weight of {name} to {weight}"))
     }
 
@@ -186,7 +186,7 @@ impl<'a> Plant<'a> {
         self.epoch += 1;
         let weights = self.ensemble.mixture().weights();
         self.ensemble.begin_epoch(self.epoch, &weights);
-        self.reporter = Reporter::new(&self.settings, 0);
+        self.reporter.begin_epoch(0);
         change
     }
 

@@ -450,6 +450,8 @@ impl Drop for Subscription {
 }
 
 #[cfg(test)]
+mod lanes;
+#[cfg(test)]
 mod selection;
 #[cfg(test)]
 mod tests;

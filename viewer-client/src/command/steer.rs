@@ -3,9 +3,8 @@
 use std::fmt;
 
 use common::{
-    ChainCommand, ChainId, ExplorerCommand, LEAST_PRECISION, LeaseRequest, MAX_FAN, MAX_RATE,
-    MAX_STEPS, MAX_WEIGHT, MIN_RATE, MOST_PRECISION, Order, PathId, Seed, SkipTo, StrategyId,
-    StrategySet,
+    ChainCommand, ExplorerCommand, LEAST_PRECISION, LeaseRequest, MAX_FAN, MAX_RATE, MAX_STEPS,
+    MAX_WEIGHT, MIN_RATE, MOST_PRECISION, Order, Seed, SkipTo, StrategyId, StrategySet,
 };
 
 use super::Form;
@@ -106,7 +105,10 @@ fn explorer(verb: &str, words: &mut Words<'_>) -> Result<ExplorerCommand, Comman
     Ok(match verb {
         "seed" => {
             let word = words.next("path")?;
-            let seed = if word == "newest" { Some(Seed::Newest) } else { path_id(word) };
+            let seed = match word {
+                "newest" => Some(Seed::Newest),
+                id => id.parse().ok().map(Seed::Path),
+            };
             ExplorerCommand::Seed(seed.ok_or_else(|| no_choice(word, "CHAIN.EPOCH.STEP, newest"))?)
         }
         "play" => ExplorerCommand::Play(words.number("RATE", MIN_RATE..=MAX_RATE)?),
@@ -146,13 +148,6 @@ fn strategy_set(word: &str) -> Option<StrategySet> {
         let number: u8 = number.parse().ok().filter(|&n| n < 64)?;
         Some(set.with(StrategyId(number), true))
     })
-}
-
-fn path_id(word: &str) -> Option<Seed> {
-    let mut parts = word.split('.');
-    let chain = ChainId(parts.next()?.parse().ok()?);
-    let (epoch, step) = (parts.next()?.parse().ok()?, parts.next()?.parse().ok()?);
-    parts.next().is_none().then_some(Seed::Path(PathId { chain, epoch, step }))
 }
 
 fn no_choice(found: &str, choices: &str) -> CommandError {

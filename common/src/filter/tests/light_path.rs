@@ -152,4 +152,23 @@ proptest! {
             .matches(&PathHeader::default(), &path(&from_light));
         prop_assert_eq!(found, expected, "{} on {}", whole.text(), from_light);
     }
+
+    /// Whatever is put into the quotes: an answer, never a panic, and a complaint that points into it.
+    #[test]
+    fn anything_for_an_expression_is_answered(
+        text in "[CELOBRTVDGSs.*+?|()<>'^0-9,{} \\[\\]-]{0,40}|\\PC{0,20}",
+    ) {
+        let filter = format!("lpe \"{}\"", text.replace(['"', '\\'], ""));
+        match Filter::parse(&filter).and_then(|filter| filter.compile(&scene())) {
+            Ok(compiled) => {
+                let header = PathHeader::default();
+                let found = compiled.matches(&header, &path("LDSTE"));
+                prop_assert_eq!(found, compiled.matches(&header, &path("LDSTE")));
+            }
+            Err(error) => {
+                prop_assert!(error.span.start <= filter.len(), "{error:?} on {filter}");
+                prop_assert!(!error.pointed(&filter).is_empty());
+            }
+        }
+    }
 }
