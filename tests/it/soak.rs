@@ -2,6 +2,7 @@
 //!
 //! `LVIS_SOAK_SECONDS` makes it last longer than `./check` has time for.
 
+use std::io::Write as _;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -227,6 +228,14 @@ async fn a_daemon_in_daily_use_loses_nothing_and_does_not_grow() {
     stalled.join_all().await;
     let (first, second) = scales.await.expect("no panic");
 
+    let summary = format!(
+        "{} steps of the explorer, {} accepted; {returns} returns; {} MiB, then {} MiB\n",
+        driver.steps,
+        driver.accepted,
+        first >> 20,
+        second >> 20
+    );
+    std::io::stdout().write_all(summary.as_bytes()).expect("standard output");
     assert!(driver.steps > 500 && driver.accepted > 50, "{} steps were seen", driver.steps);
     assert_eq!(follower.path, driver.path, "both stand where the explorer stands");
     let (_, steps, accepted) = driver.of_epoch;

@@ -119,6 +119,17 @@ fn fans_and_looking_leave_the_walk_alone() {
     assert!(fanned > 20, "{fanned} proposals would have been accepted");
     assert_eq!(quiet.film(), looked_at.film(), "nor do fans touch the film");
     let film = quiet.film().expect("it has moved");
+    // Looking for paths that were not there leaves no trace either.
+    let ids = (1..=WINDOW).map(|step| PathId { chain: ChainId(0), epoch: 1, step });
+    let tracer = Tracer::new(&scene);
+    let mut scratch = Film::new(scene.camera().width, scene.camera().height);
+    let missing: Vec<PathId> =
+        ids.filter(|&id| archive.path(&tracer, id, &mut scratch).is_err()).collect();
+    assert!(!missing.is_empty(), "some steps are not accepted");
+    for id in missing {
+        assert!(quiet.seed(Seed::Path(id), &archive).is_err(), "{id} was not there");
+    }
+    assert_eq!(quiet.film().as_ref(), Some(&film), "and it goes on where it was");
     let total: f64 = film.pixels.iter().map(|p| p.luminance()).sum();
     let mean = total / film.pixels.len() as f64;
     assert!((mean - 1.0).abs() < 1e-9, "every step is on the film: {mean}");

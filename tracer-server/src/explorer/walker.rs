@@ -123,8 +123,9 @@ impl Walker {
                 .map_err(|failure| format!("the path {origin} is no path: {}", failure.name()))?;
             (chain.current().clone(), Arc::clone(&walk.round))
         } else {
-            // The explorer's film is scratch here, since a seed wipes it.
-            archive.path(&scene, origin, &mut self.film).map_err(|gone| gone.to_string())?
+            // The explorer's own film must not see steps that only find a path, or find none.
+            let mut scratch = Film::new(self.film.width(), self.film.height());
+            archive.path(&scene, origin, &mut scratch).map_err(|gone| gone.to_string())?
         };
         let mixture = restricted(&round.mixture, self.allowed)?;
         self.begin(path, origin, round, mixture);

@@ -183,6 +183,7 @@ async fn a_viewer_that_keeps_up_misses_nothing_and_another_is_told() {
     assert_eq!((seen.missed, seen.path.as_ref()), (0, Some(&*walk.path)), "nothing is missing");
     late.take(delivered(&stalled).await);
     assert!(late.missed > 10_000, "{} steps do not fit", late.missed);
+    assert_eq!(late.steps + late.missed, seen.steps, "each is told of");
     assert_eq!(late.path.as_ref(), Some(&*walk.path), "it is where the explorer is");
 }
 

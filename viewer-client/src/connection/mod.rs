@@ -12,7 +12,7 @@ pub use backoff::delay;
 pub use inbox::{Delivery, FocusNews, Inbox};
 pub use peer::{Bearer, Peer, Trust};
 pub use proto::Fingerprint;
-pub use session::{Greeting, SceneFetcher, Session, SessionError};
+pub use session::{Greeting, SceneFetcher, Session, SessionError, own_name};
 
 use std::fmt;
 use std::sync::Arc;
@@ -66,7 +66,7 @@ impl Link {
             held_hash: String::new(),
             orders,
             greeting: Greeting {
-                name: "Lvis viewer".to_owned(),
+                name: own_name("Lvis viewer"),
                 role: Role::Driver,
                 focus: true,
                 ..Greeting::default()

@@ -28,6 +28,8 @@ const PING_INTERVAL: Duration = Duration::from_secs(10);
 const PING_TIMEOUT: Duration = Duration::from_secs(10);
 /// How long to wait for the daemon to end the stream after a goodbye.
 const FAREWELL: Duration = Duration::from_millis(300);
+/// Longest name of a viewer, in bytes.
+const MAX_NAME: usize = 256;
 /// Messages from this viewer that may wait to be sent.
 const OUTBOX: usize = 32;
 
@@ -99,6 +101,13 @@ pub struct Greeting {
     pub focus: bool,
     /// What the welcome of a session gave that was lost; blank for none.
     pub resume: String,
+}
+
+/// The name that others see: what the variable `LVIS_NAME` says, or else `usual`.
+pub fn own_name(usual: &str) -> String {
+    let named = std::env::var("LVIS_NAME").ok().filter(|name| !name.trim().is_empty());
+    let name = named.unwrap_or_else(|| usual.to_owned());
+    name[..name.floor_char_boundary(MAX_NAME)].to_owned()
 }
 
 /// An open session.

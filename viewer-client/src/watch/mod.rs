@@ -12,7 +12,7 @@ use proto::{TracerEvent, WantedFilter};
 use serde_json::{Value, json};
 
 use crate::cli::WatchArgs;
-use crate::connection::{Greeting, Session};
+use crate::connection::{Greeting, Session, own_name};
 use crate::format;
 use focus::Script;
 
@@ -27,7 +27,7 @@ async fn watch(args: &WatchArgs) -> anyhow::Result<()> {
     let filter = args.filter.clone().map(|text| WantedFilter { revision: 1, text });
     let peer = args.trust.peer(args.address.clone())?;
     let role = if args.order.is_empty() { Role::Observer } else { Role::Driver };
-    let name = "Lvis watch".to_owned();
+    let name = own_name("Lvis watch");
     let greeting = Greeting { name, role, filter, focus: args.focus, ..Greeting::default() };
     let mut session = Session::open(&peer, greeting).await?;
     let mut names = Names { focus: args.focus, ..Names::default() };
