@@ -1,10 +1,11 @@
 //! Which key does what. The table is the help sheet, too.
 
+use common::{ExplorerCommand, MIN_RATE, Order, Pace, Seed, SkipTo};
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use crate::command::{
     CameraCommand, CloudCommand, ColorMode, Command, ImageCommand, LayoutCommand, PanelName,
-    SceneCommand, Shading, Side, Switch, ThemeName,
+    PathCommand, SceneCommand, Shading, Side, Switch, ThemeName, VertexStep,
 };
 use crate::world::World;
 
@@ -28,19 +29,22 @@ pub enum Group {
     Camera,
     /// Paths on screen.
     Paths,
+    /// The chain that the user steps.
+    Explorer,
     /// Surfaces, image and window.
     View,
 }
 
 impl Group {
     /// All, in the order of the help sheet.
-    pub const ALL: [Self; 3] = [Self::Camera, Self::Paths, Self::View];
+    pub const ALL: [Self; 4] = [Self::Camera, Self::Paths, Self::Explorer, Self::View];
 
     /// The heading.
     pub fn title(self) -> &'static str {
         match self {
             Self::Camera => "Camera",
             Self::Paths => "Paths",
+            Self::Explorer => "Explorer",
             Self::View => "Scene, image, window",
         }
     }
@@ -48,10 +52,10 @@ impl Group {
 
 /// The mouse, for the help sheet; [`crate::panel`]'s viewport gives it this meaning.
 pub const MOUSE: [(&str, &str); 5] = [
+    ("Click", "select a path; again, the next one there"),
     ("Left, middle drag", "turn round the pivot; look about while flying"),
     ("Right, Shift+drag", "shift the view"),
     ("Wheel", "come closer to the point under the cursor"),
-    ("Double click", "show the whole scene"),
     ("W A S D, Q E", "while flying: move, down and up; Shift is faster"),
 ];
 
@@ -61,6 +65,10 @@ const fn plain(key: Key) -> KeyboardShortcut {
 
 const fn ctrl(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::CTRL, key)
+}
+
+const fn shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::SHIFT, key)
 }
 
 const fn bind(
@@ -104,6 +112,31 @@ pub const BINDINGS: &[Binding] = &[
     bind(plain(Key::L), Group::Paths, "tint the light end and the camera end", |_| {
         Command::Cloud(CloudCommand::Ends(Switch::Toggle))
     }),
+    bind(plain(Key::V), Group::Paths, "next vertex of the selected path", |_| {
+        Command::Path(PathCommand::Vertex(VertexStep::Next))
+    }),
+    bind(shift(Key::V), Group::Paths, "previous vertex of the selected path", |_| {
+        Command::Path(PathCommand::Vertex(VertexStep::Previous))
+    }),
+    bind(plain(Key::Escape), Group::Paths, "select no path", |_| {
+        Command::Path(PathCommand::Deselect)
+    }),
+    bind(plain(Key::Enter), Group::Explorer, "explore the selected path, or the newest", |w| {
+        let seed = w.selection.map_or(Seed::Newest, |s| Seed::Path(s.header.id));
+        explore(ExplorerCommand::Seed(seed))
+    }),
+    bind(plain(Key::K), Group::Explorer, "play or pause", |w| {
+        let state = &w.status.steering.explorer;
+        let rate = if state.rate >= MIN_RATE { state.rate } else { 2.0 };
+        let paused = state.pace == Pace::Paused;
+        explore(if paused { ExplorerCommand::Play(rate) } else { ExplorerCommand::Pause })
+    }),
+    bind(plain(Key::N), Group::Explorer, "one step", |_| explore(ExplorerCommand::Step(1))),
+    bind(shift(Key::N), Group::Explorer, "on to the next acceptance", |_| {
+        explore(ExplorerCommand::Skip(SkipTo::Acceptance))
+    }),
+    bind(ctrl(Key::Z), Group::View, "undo", |_| Command::Undo),
+    bind(ctrl(Key::Y), Group::View, "redo", |_| Command::Redo),
     bind(plain(Key::Z), Group::View, "shaded, edges, wireframe, off", |world| {
         let next = after(&Shading::ALL, world.settings.scene.shading);
         Command::Scene(SceneCommand::Shading(next))
@@ -130,6 +163,10 @@ pub const BINDINGS: &[Binding] = &[
     bind(ctrl(Key::Q), Group::View, "quit", |_| Command::Quit),
 ];
 
+fn explore(command: ExplorerCommand) -> Command {
+    Command::Order(Order::Explorer(command))
+}
+
 /// A key as it is printed on keyboards, with its modifiers.
 pub fn key_name(shortcut: KeyboardShortcut) -> String {
     let key = match shortcut.logical_key {
@@ -139,7 +176,11 @@ pub fn key_name(shortcut: KeyboardShortcut) -> String {
         Key::Period => ".",
         other => other.name(),
     };
-    if shortcut.modifiers.ctrl { format!("Ctrl+{key}") } else { key.to_owned() }
+    match shortcut.modifiers {
+        m if m.ctrl => format!("Ctrl+{key}"),
+        m if m.shift => format!("Shift+{key}"),
+        _ => key.to_owned(),
+    }
 }
 
 /// The commands of the keys pressed since the last frame.

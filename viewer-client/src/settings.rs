@@ -1,5 +1,8 @@
 //! What the user has chosen; panels read it, [`crate::command::Command`]s change it.
 
+use glam::{Vec3, Vec4};
+
+use crate::camera::Bounds;
 use crate::command::{
     ClipSide, CloudCommand, ColorMode, ColorScale, FilterCommand, ImageCommand, Layer,
     LayoutCommand, Marks, PanelName, SceneCommand, Shading, ThemeName, ToneCurve,
@@ -149,6 +152,23 @@ impl SceneSettings {
             SceneCommand::Clip(side) => self.clip = side,
             SceneCommand::Cut(place) => self.cut = place,
         }
+    }
+
+    /// True when surfaces cover what lies behind them.
+    pub fn covers(&self) -> bool {
+        matches!(self.shading, Shading::Shaded | Shading::Edges) && self.opacity > 0.5
+    }
+
+    /// True when surfaces hide what lies behind them.
+    pub fn hides(&self) -> bool {
+        matches!(self.shading, Shading::Shaded | Shading::Edges) && self.opacity > 0.5
+    }
+
+    /// The plane whose positive side is drawn, in a scene of these bounds.
+    pub fn clip_plane(&self, bounds: Bounds) -> Vec4 {
+        let Some(normal) = self.clip.normal().map(Vec3::from) else { return Vec4::W };
+        let place = bounds.min.lerp(bounds.max, self.cut);
+        normal.extend(-normal.dot(place))
     }
 }
 

@@ -109,6 +109,13 @@ impl Focus {
         &self.moments
     }
 
+    /// The step of this number, or the newest; `None` where it is not kept.
+    pub fn moment(&self, number: Option<u64>) -> Option<&Moment> {
+        let Some(number) = number else { return self.moments.back() };
+        let index = self.moments.partition_point(|moment| moment.step.number < number);
+        self.moments.get(index).filter(|moment| moment.step.number == number)
+    }
+
     /// Takes in a whole path.
     pub fn take_path(&mut self, path: FocusPath) {
         self.current = Some(Arc::new(path));
@@ -142,12 +149,12 @@ impl Focus {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use common::{ChainId, Event, FocusOutcome, PathId, RatioFactors, StrategyId, VertexKind};
 
     use super::*;
 
-    fn vertex(tag: u32) -> VertexRecord {
+    pub(crate) fn vertex(tag: u32) -> VertexRecord {
         VertexRecord {
             position: [tag as f32, 0.0, 0.0],
             normal: [0; 2],
@@ -158,7 +165,7 @@ mod tests {
         }
     }
 
-    fn step(number: u64, outcome: FocusOutcome, length: usize) -> FocusStep {
+    pub(crate) fn step(number: u64, outcome: FocusOutcome, length: usize) -> FocusStep {
         FocusStep {
             number,
             id: PathId { chain: ChainId::EXPLORER, epoch: 1, step: number },
@@ -199,6 +206,9 @@ mod tests {
         focus.take_step(step(9, FocusOutcome::Accepted, 3));
         assert_eq!(focus.missed, 2, "a step out of turn is left out");
         assert!(focus.current().is_none(), "a whole path is waited for");
+        assert_eq!(focus.moment(Some(2)).map(|m| m.step.fan), Some(true), "by its number");
+        assert_eq!(focus.moment(None).map(|m| m.step.number), Some(3), "the newest");
+        assert_eq!(focus.moment(Some(7)), None, "never came");
         focus.miss(5);
         assert_eq!(focus.missed, 7, "what is missing is counted");
     }

@@ -11,6 +11,14 @@ pub const GOOD: Color32 = Color32::from_rgb(88, 196, 120);
 pub const BUSY: Color32 = Color32::from_rgb(238, 178, 72);
 /// Something is wrong.
 pub const BAD: Color32 = Color32::from_rgb(236, 96, 88);
+/// What stays of the explorer's path.
+pub const EXPLORED: Color32 = Color32::from_rgb(120, 200, 255);
+/// What a proposal replaces.
+pub const DELETED: Color32 = Color32::from_rgb(240, 140, 60);
+/// What a proposal brings.
+pub const PROPOSED: Color32 = Color32::from_rgb(120, 240, 150);
+/// The selected path.
+pub const SELECTED: Color32 = Color32::from_rgb(255, 120, 220);
 /// The end of a path at the light; as in the shader.
 pub const LIGHT_END: Color32 = Color32::from_rgb(255, 204, 117);
 /// The end of a path at the camera; as in the shader.

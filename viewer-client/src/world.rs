@@ -8,8 +8,10 @@ use crate::camera::ViewCamera;
 use crate::film::Film;
 use crate::imaging::Reference;
 use crate::model::Model;
+use crate::selection::{Names, Selection};
 use crate::settings::Settings;
 use crate::status::Status;
+use crate::steering::Moment;
 use crate::store::Store;
 
 /// A view of the whole viewer, for the length of a frame.
@@ -27,6 +29,12 @@ pub struct World<'a> {
     pub film: &'a Film,
     /// What the image is compared with.
     pub reference: Option<&'a Reference>,
+    /// The path that is looked at.
+    pub selection: Option<&'a Selection>,
+    /// The step of the explorer that is shown, and its number where it is not the newest.
+    pub moment: Option<&'a Moment>,
+    /// See [`World::moment`].
+    pub scrub: Option<u64>,
     /// The scene, once it has come.
     pub model: Option<&'a Model>,
     /// When the frame began.
@@ -37,6 +45,16 @@ impl World<'_> {
     /// How well the chains explore, as far as it is known.
     pub fn diagnostics(&self) -> Option<&Diagnostics> {
         self.status.statistics.as_ref()?.diagnostics.as_deref()
+    }
+
+    /// What names and units the description of a path needs.
+    pub fn names(&self) -> Names<'_> {
+        let welcome = self.status.welcome.as_ref();
+        Names {
+            frame: welcome.map(|w| w.frame),
+            strategies: welcome.map(|w| w.strategies.as_slice()).unwrap_or_default(),
+            mesh: self.model.map(|model| &model.mesh),
+        }
     }
 
     /// The name of a strategy; seeds have none.

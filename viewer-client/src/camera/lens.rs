@@ -67,6 +67,11 @@ impl Lens {
         }
     }
 
+    /// The point seen at tangents `right` and `up` from the view direction, at `depth` along it.
+    pub fn at(&self, [right, up]: [f32; 2], depth: f32) -> Vec3 {
+        self.eye + depth * (self.forward + right * self.right + up * self.up)
+    }
+
     /// From scene units to clip space. Depth is reversed, 1 at the near plane and 0 at infinity,
     /// which spreads the precision of floats evenly over distances.
     pub fn view_projection(&self) -> Mat4 {

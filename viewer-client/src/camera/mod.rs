@@ -95,6 +95,11 @@ impl ViewCamera {
                 switch.apply(&mut self.through);
                 self.through &= self.render.is_some();
             }
+            CameraCommand::Focus(point, distance) => {
+                self.leave_render_camera();
+                self.pivot = point.into();
+                self.distance = self.distance.min(distance);
+            }
             CameraCommand::Frame => {
                 self.through = false;
                 self.frame();

@@ -27,6 +27,8 @@ pub enum CameraCommand {
     Fly(Switch),
     /// Looking through the render camera.
     Through(Switch),
+    /// Turns round this point from now on, in scene units, from no farther than this.
+    Focus([f32; 3], f32),
     /// Shows the whole scene.
     Frame,
     /// Shows the whole scene from one side.
@@ -77,6 +79,7 @@ pub(super) const FORMS: &[Form] = &[
     ("camera move FORWARD RIGHT UP", "step, in sizes of the scene"),
     ("camera fly on|off|toggle", "fly instead of orbiting"),
     ("camera through on|off|toggle", "look through the render camera"),
+    ("camera focus X Y Z DISTANCE", "turn round a point, in scene units, from no farther away"),
     ("camera frame", "show the whole scene"),
     ("camera view front|back|left|right|top|bottom", "show the scene from one side"),
 ];
@@ -91,6 +94,7 @@ impl fmt::Display for CameraCommand {
             Self::Move([forward, right, up]) => write!(f, "move {forward} {right} {up}"),
             Self::Fly(switch) => write!(f, "fly {switch}"),
             Self::Through(switch) => write!(f, "through {switch}"),
+            Self::Focus([x, y, z], d) => write!(f, "focus {x} {y} {z} {d}"),
             Self::Frame => write!(f, "frame"),
             Self::View(side) => write!(f, "view {side}"),
         }
@@ -100,6 +104,7 @@ impl fmt::Display for CameraCommand {
 pub(super) fn parse(words: &mut Words<'_>) -> Result<CameraCommand, CommandError> {
     const TURN: std::ops::RangeInclusive<f32> = -3600.0..=3600.0;
     const STEP: std::ops::RangeInclusive<f32> = -100.0..=100.0;
+    const PLACE: std::ops::RangeInclusive<f32> = -1e6..=1e6;
     const EDGE: std::ops::RangeInclusive<f32> = -20.0..=20.0;
     Ok(match words.next("camera command")? {
         "orbit" => CameraCommand::Orbit(words.number("RIGHT", TURN)?, words.number("UP", TURN)?),
@@ -116,6 +121,10 @@ pub(super) fn parse(words: &mut Words<'_>) -> Result<CameraCommand, CommandError
         ]),
         "fly" => CameraCommand::Fly(words.switch()?),
         "through" => CameraCommand::Through(words.switch()?),
+        "focus" => CameraCommand::Focus(
+            [words.number("X", PLACE)?, words.number("Y", PLACE)?, words.number("Z", PLACE)?],
+            words.number("DISTANCE", 0.01..=1e6)?,
+        ),
         "frame" => CameraCommand::Frame,
         "view" => CameraCommand::View(words.choice("SIDE", &Side::ALL)?),
         other => return Err(CommandError::Unknown(format!("camera {other}"))),

@@ -25,6 +25,10 @@ pub enum PanelName {
     Scene,
     /// The progressive image.
     Image,
+    /// The selected path.
+    Path,
+    /// The chain that the user steps.
+    Explorer,
     /// Counts and rates.
     Statistics,
     /// Whether the chains can be believed.
@@ -33,8 +37,15 @@ pub enum PanelName {
 
 impl PanelName {
     /// All of them, from the left of the window to the right.
-    pub const ALL: [Self; 5] =
-        [Self::Cloud, Self::Scene, Self::Image, Self::Statistics, Self::Diagnostics];
+    pub const ALL: [Self; 7] = [
+        Self::Cloud,
+        Self::Scene,
+        Self::Image,
+        Self::Path,
+        Self::Explorer,
+        Self::Statistics,
+        Self::Diagnostics,
+    ];
 
     /// The heading.
     pub fn title(self) -> &'static str {
@@ -44,6 +55,8 @@ impl PanelName {
             Self::Image => "Image",
             Self::Statistics => "Statistics",
             Self::Diagnostics => "Chains",
+            Self::Path => "Selected path",
+            Self::Explorer => "Explorer",
         }
     }
 }
@@ -56,6 +69,8 @@ impl fmt::Display for PanelName {
             Self::Image => "image",
             Self::Statistics => "statistics",
             Self::Diagnostics => "diagnostics",
+            Self::Path => "path",
+            Self::Explorer => "explorer",
         })
     }
 }
@@ -87,7 +102,10 @@ impl fmt::Display for ThemeName {
 }
 
 pub(super) const FORMS: &[Form] = &[
-    ("panel NAME on|off|toggle", "cloud, scene, image, statistics, diagnostics: open or close it"),
+    (
+        "panel NAME on|off|toggle",
+        "cloud, scene, image, path, explorer, statistics, diagnostics: open or close it",
+    ),
     ("theme dark|light|toggle", "colours of the interface"),
     ("help on|off|toggle", "the sheet of keys"),
 ];

@@ -9,6 +9,7 @@ mod cloud;
 mod filter;
 mod image;
 mod layout;
+mod path;
 mod scene;
 mod steer;
 mod words;
@@ -18,6 +19,7 @@ pub use cloud::{CloudCommand, ColorMode, ColorScale, Marks};
 pub use filter::FilterCommand;
 pub use image::{ImageCommand, Layer, ToneCurve};
 pub use layout::{LayoutCommand, PanelName, ThemeName};
+pub use path::{PathCommand, VertexStep};
 pub use scene::{ClipSide, SceneCommand, Shading};
 pub use words::{CommandError, Switch};
 
@@ -44,6 +46,14 @@ pub enum Command {
     Layout(LayoutCommand),
     /// Steers explorer and chains, or concerns who may.
     Order(Order),
+    /// Concerns the path that is looked at.
+    Path(PathCommand),
+    /// Shows a step of the explorer by its number, or the newest from now on.
+    Scrub(Option<u64>),
+    /// Takes back what was done last.
+    Undo,
+    /// Does it again.
+    Redo,
     /// Tries to connect at once rather than when the next attempt is due.
     Reconnect,
     /// Closes the viewer.
@@ -53,7 +63,9 @@ pub enum Command {
 /// A command's text form with its parameters in capitals, and what it does.
 pub type Form = (&'static str, &'static str);
 
-const OWN_FORMS: [Form; 2] = [
+const OWN_FORMS: [Form; 4] = [
+    ("undo", "take back what was done last"),
+    ("redo", "do it again"),
     ("reconnect", "connect now instead of waiting for the next attempt"),
     ("quit", "close the viewer"),
 ];
@@ -62,7 +74,7 @@ const OWN_FORMS: [Form; 2] = [
 pub fn forms() -> impl Iterator<Item = Form> {
     [camera::FORMS, cloud::FORMS, scene::FORMS, filter::FORMS, image::FORMS]
         .into_iter()
-        .chain([layout::FORMS, steer::FORMS, &OWN_FORMS])
+        .chain([layout::FORMS, path::FORMS, steer::FORMS, &OWN_FORMS])
         .flatten()
         .copied()
 }
@@ -77,6 +89,11 @@ impl fmt::Display for Command {
             Self::Image(command) => write!(f, "image {command}"),
             Self::Layout(command) => write!(f, "{command}"),
             Self::Order(order) => write!(f, "{}", steer::Text(*order)),
+            Self::Path(command) => write!(f, "path {command}"),
+            Self::Scrub(Some(number)) => write!(f, "explorer show {number}"),
+            Self::Scrub(None) => write!(f, "explorer show live"),
+            Self::Undo => write!(f, "undo"),
+            Self::Redo => write!(f, "redo"),
             Self::Reconnect => write!(f, "reconnect"),
             Self::Quit => write!(f, "quit"),
         }
@@ -94,9 +111,15 @@ impl FromStr for Command {
             "scene" => Self::Scene(scene::parse(&mut words)?),
             "filter" => Self::Filter(filter::parse(&mut words)?),
             "image" => Self::Image(image::parse(&mut words)?),
+            "explorer" if words.peek() == Some("show") => {
+                Self::Scrub(steer::parse_show(&mut words)?)
+            }
             group @ ("explorer" | "chains" | "lease") => {
                 Self::Order(steer::parse(group, &mut words)?)
             }
+            "path" => Self::Path(path::parse(&mut words)?),
+            "undo" => Self::Undo,
+            "redo" => Self::Redo,
             "reconnect" => Self::Reconnect,
             "quit" => Self::Quit,
             word => Self::Layout(layout::parse(word, &mut words)?),
@@ -113,7 +136,7 @@ mod tests {
     /// One example of every form, in the order of [`forms`].
     const EXAMPLES: &str = "camera orbit 12.5 -3\ncamera pan 0.1 -0.25\ncamera zoom 1.5 0.25 -0.5\n\
         camera look 3 4\ncamera move 0.1 0 -0.2\ncamera fly toggle\ncamera through on\n\
-        camera frame\ncamera view front\n\
+        camera focus 1 2 -3 40\ncamera frame\ncamera view front\n\
         cloud freeze toggle\ncloud clear\ncloud width 2.5\ncloud opacity 0.5\ncloud hidden 0.1\n\
         cloud fade 500\ncloud shown 2000\ncloud budget 64\ncloud color strategy\ncloud ends off\n\
         cloud dots 1.5\ncloud marks ends\ncloud scale log\ncloud cue 0.5\ncloud dim 0.25\n\
@@ -124,11 +147,12 @@ mod tests {
         image show difference\nimage tone gamma\nimage gamma 1.8\nimage reference a b.exr\n\
         image forget\nimage save out.png\nimage tev 127.0.0.1:14158\n\
         panel statistics off\ntheme light\nhelp toggle\n\
+        path pick 0.1 -0.2 0.01\npath none\npath vertex 3\n\
         explorer seed 3.0.1024\nexplorer play 2.5\nexplorer pause\nexplorer step 10\n\
-        explorer skip accepted\nexplorer allow 0,2,5\nexplorer fan 2 100\nchains pause\n\
-        chains resume\nchains weight 1 0.25\nchains precision 0.001\nchains restart 7\n\
-        lease ask\nlease release\nlease give 12\n\
-        reconnect\nquit";
+        explorer skip accepted\nexplorer allow 0,2,5\nexplorer fan 2 100\nexplorer show live\n\
+        chains pause\nchains resume\nchains weight 1 0.25\nchains precision 0.001\n\
+        chains restart 7\nlease ask\nlease release\nlease give 12\n\
+        undo\nredo\nreconnect\nquit";
 
     #[test]
     fn every_command_survives_its_text() {

@@ -18,6 +18,7 @@ pub(super) const FORMS: &[Form] = &[
     ("explorer skip accepted|N", "step to the next acceptance, or to strategy number N"),
     ("explorer allow all|N,...", "let only the strategies of these numbers act"),
     ("explorer fan N COUNT", "show proposals of strategy number N without moving"),
+    ("explorer show NUMBER|live", "show a step by its number, or the newest from now on"),
     ("chains pause", "stop the chains"),
     ("chains resume", "let them go on"),
     ("chains weight N WEIGHT", "change how often strategy number N is chosen"),
@@ -99,6 +100,15 @@ pub(super) fn parse(group: &str, words: &mut Words<'_>) -> Result<Order, Command
         ("explorer", verb) => Order::Explorer(explorer(verb, words)?),
         (group, verb) => return Err(CommandError::Unknown(format!("{group} {verb}"))),
     })
+}
+
+/// Reads `show NUMBER|live`: what concerns the viewer alone.
+pub(super) fn parse_show(words: &mut Words<'_>) -> Result<Option<u64>, CommandError> {
+    words.next("show")?;
+    if words.peek() == Some("live") {
+        return words.next("live").map(|_| None);
+    }
+    words.within("NUMBER", 0..=u64::MAX).map(Some)
 }
 
 fn explorer(verb: &str, words: &mut Words<'_>) -> Result<ExplorerCommand, CommandError> {

@@ -105,6 +105,11 @@ impl<'a> Words<'a> {
         Self { rest: text.split_whitespace() }
     }
 
+    /// The next word, without reading it.
+    pub(super) fn peek(&self) -> Option<&'a str> {
+        self.rest.clone().next()
+    }
+
     /// The next word, which is a `what`.
     pub(super) fn next(&mut self, what: &'static str) -> Result<&'a str, CommandError> {
         self.rest.next().ok_or(CommandError::MissingWord(what))

@@ -37,8 +37,9 @@ fn sheet(ui: &mut Ui) -> bool {
     ui.columns(3, |columns| {
         if let [left, middle, right] = columns {
             section(left, "Mouse", MOUSE.map(|(k, h)| (k.to_owned(), h)));
-            section(left, Group::Paths.title(), keys(Group::Paths));
-            section(middle, Group::Camera.title(), keys(Group::Camera));
+            section(left, Group::Camera.title(), keys(Group::Camera));
+            section(middle, Group::Paths.title(), keys(Group::Paths));
+            section(middle, Group::Explorer.title(), keys(Group::Explorer));
             section(right, Group::View.title(), keys(Group::View));
         }
     });

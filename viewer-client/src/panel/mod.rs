@@ -5,10 +5,12 @@
 
 mod cloud;
 mod diagnostics;
+mod explorer;
 mod help;
 mod image;
 mod menu;
 mod notice;
+mod path;
 mod scene;
 mod statistics;
 mod status;
@@ -57,6 +59,8 @@ pub fn all() -> Vec<(Slot, Box<dyn Panel>)> {
         (Slot::Left(PanelName::Cloud), Box::new(cloud::Cloud)),
         (Slot::Left(PanelName::Scene), Box::new(scene::Scene)),
         (Slot::Right(PanelName::Image), Box::new(image::ImagePanel::default())),
+        (Slot::Right(PanelName::Path), Box::new(path::PathPanel)),
+        (Slot::Right(PanelName::Explorer), Box::new(explorer::ExplorerPanel::default())),
         (Slot::Right(PanelName::Statistics), Box::new(statistics::StatisticsPanel)),
         (Slot::Right(PanelName::Diagnostics), Box::new(diagnostics::DiagnosticsPanel)),
         (Slot::Centre, Box::new(viewport::Viewport)),

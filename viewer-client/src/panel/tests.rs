@@ -10,29 +10,32 @@ use egui_kittest::kittest::Queryable as _;
 use super::*;
 use crate::camera::ViewCamera;
 use crate::command::{
-    CameraCommand, CloudCommand, ImageCommand, LayoutCommand, SceneCommand, Switch, ThemeName,
+    CameraCommand, CloudCommand, ImageCommand, LayoutCommand, PathCommand, SceneCommand, Switch,
+    ThemeName, VertexStep,
 };
 use crate::film::Film;
 use crate::imaging::Reference;
+use crate::selection::Selection;
 use crate::settings::Settings;
 use crate::status::{LinkState, Status};
 use crate::store::Store;
 use crate::synthetic::welcome;
 
 /// Everything a panel may read, and what it said.
-struct Stage {
-    settings: Settings,
-    camera: ViewCamera,
-    status: Status,
-    store: Store,
-    film: Film,
-    reference: Option<Reference>,
-    panel: Box<dyn Panel>,
-    said: Vec<Command>,
+pub(super) struct Stage {
+    pub(super) settings: Settings,
+    pub(super) camera: ViewCamera,
+    pub(super) status: Status,
+    pub(super) store: Store,
+    pub(super) film: Film,
+    pub(super) reference: Option<Reference>,
+    pub(super) selection: Option<Selection>,
+    pub(super) panel: Box<dyn Panel>,
+    pub(super) said: Vec<Command>,
 }
 
 impl Stage {
-    fn new(panel: impl Panel + 'static) -> Self {
+    pub(super) fn new(panel: impl Panel + 'static) -> Self {
         Self {
             settings: Settings::default(),
             camera: ViewCamera::default(),
@@ -40,12 +43,13 @@ impl Stage {
             store: Store::new(64 << 20),
             film: Film::default(),
             reference: None,
+            selection: None,
             panel: Box::new(panel),
             said: Vec::new(),
         }
     }
 
-    fn harness(self) -> Harness<'static, Self> {
+    pub(super) fn harness(self) -> Harness<'static, Self> {
         Harness::builder().with_size(egui::vec2(520.0, 700.0)).build_ui_state(
             |ui, stage: &mut Self| {
                 let world = World {
@@ -55,6 +59,9 @@ impl Stage {
                     store: &stage.store,
                     film: &stage.film,
                     reference: stage.reference.as_ref(),
+                    selection: stage.selection.as_ref(),
+                    moment: stage.status.steering.focus.moment(None),
+                    scrub: None,
                     model: None,
                     now: Instant::now(),
                 };
@@ -112,7 +119,7 @@ fn diagnosed() -> Statistics {
 }
 
 /// True when some label contains `text`.
-fn shows(harness: &Harness<'_, Stage>, text: &str) -> bool {
+pub(super) fn shows(harness: &Harness<'_, Stage>, text: &str) -> bool {
     harness.query_all_by_label_contains(text).next().is_some()
 }
 
@@ -372,6 +379,9 @@ fn long_numbers_do_not_widen_their_panel() {
                 store: &stage.store,
                 film: &stage.film,
                 reference: stage.reference.as_ref(),
+                selection: stage.selection.as_ref(),
+                moment: stage.status.steering.focus.moment(None),
+                scrub: None,
                 model: None,
                 now: Instant::now(),
             };
@@ -433,6 +443,40 @@ fn the_help_sheet_lists_every_key() {
     for binding in crate::keys::BINDINGS {
         assert!(shows(&harness, binding.help), "`{}` is missing", binding.help);
     }
+}
+
+#[test]
+fn the_path_panel_tells_all_of_a_path() {
+    let mut stage = Stage::new(path::PathPanel);
+    stage.status.welcome(welcome());
+    let batch = crate::synthetic::batch(&[&[[1.0, 2.0, 3.0], [4.0, 6.0, 3.0]]]);
+    let mut reader = batch.reader();
+    let view = reader.next().expect("a path");
+    let (header, vertices) = (view.header, view.vertices.to_vec());
+    stage.selection = Some(Selection { header, vertices, vertex: Some(1), place: (2, 3) });
+    let mut harness = stage.harness();
+    harness.run();
+    for text in ["D D D", "2 of 3 here", "bidirectional", "1.0000e0", "4.000 6.000 3.000"] {
+        assert!(shows(&harness, text), "`{text}` is missing");
+    }
+    assert!(shows(&harness, "5.000000"), "the edge before the vertex");
+    harness.get_by_label("D x2").click();
+    harness.run();
+    harness.get_by_label("Deselect").click();
+    harness.run();
+    let expected = [PathCommand::Vertex(VertexStep::To(2)), PathCommand::Deselect];
+    assert_eq!(harness.state().said, expected.map(Command::Path), "two clicks");
+}
+
+#[test]
+fn a_click_in_the_viewport_picks() {
+    let mut harness = Stage::new(viewport::Viewport).harness();
+    harness.run_steps(2);
+    harness.get_by_role_and_label(WidgetRole::Canvas, "Viewport").click();
+    harness.run_steps(2);
+    let said = &harness.state().said;
+    let picked = |c: &Command| matches!(c, Command::Path(PathCommand::Pick(aim)) if aim.at[0].abs() < 1e-3 && aim.reach > 0.0);
+    assert!(said.iter().any(picked), "the middle was clicked: {said:?}");
 }
 
 #[test]

@@ -5,7 +5,7 @@ mod frame;
 mod legend;
 mod readout;
 
-use egui::{ColorImage, RichText, TextureHandle, TextureOptions, Ui};
+use egui::{Button, ColorImage, RichText, TextureHandle, TextureOptions, Ui};
 
 use super::Panel;
 use super::widgets::{Scale, capitalised, empty_state, slider};
@@ -133,19 +133,18 @@ fn layers(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
                 || (layer.is_map() && world.diagnostics().is_none());
             let label = capitalised(&layer.to_string());
             let chosen = world.settings.image.layer == layer;
-            ui.add_enabled_ui(!missing, |ui| {
-                let button = ui
-                    .selectable_label(chosen, label)
-                    .on_hover_text(meaning(layer))
-                    .on_disabled_hover_text(if layer.is_map() {
-                        "The daemon has not told yet how the chains do"
-                    } else {
-                        "Load a reference first: see Compare below"
-                    });
-                if button.clicked() {
-                    commands.push(Command::Image(ImageCommand::Show(layer)));
-                }
-            });
+            // A row of its own for each would not wrap.
+            let button = ui
+                .add_enabled(!missing, Button::selectable(chosen, label))
+                .on_hover_text(meaning(layer))
+                .on_disabled_hover_text(if layer.is_map() {
+                    "The daemon has not told yet how the chains do"
+                } else {
+                    "Load a reference first: see Compare below"
+                });
+            if button.clicked() {
+                commands.push(Command::Image(ImageCommand::Show(layer)));
+            }
         }
     });
 }

@@ -5,6 +5,8 @@ use egui::{
 };
 use glam::Vec3;
 
+use super::project::Projector;
+use super::{ghost, highlight};
 use crate::format;
 use crate::status::LinkState;
 use crate::theme;
@@ -14,7 +16,7 @@ use crate::world::World;
 pub(super) const MARGIN: f32 = 14.0;
 
 /// Writes over the view.
-pub(super) fn paint(ui: &Ui, rect: Rect, world: &World<'_>) {
+pub(super) fn paint(ui: &Ui, projector: &Projector, rect: Rect, world: &World<'_>) {
     let painter = ui.painter().with_clip_rect(rect);
     let ink = if world.settings.layout.dark {
         Color32::from_rgb(214, 219, 227)
@@ -26,6 +28,8 @@ pub(super) fn paint(ui: &Ui, rect: Rect, world: &World<'_>) {
         nothing_yet(&painter, rect, world, ink);
         return;
     }
+    ghost::paint(&painter, projector, rect, world);
+    highlight::paint(&painter, projector, world, ink);
     axes(&painter, rect, world, ink);
     captions(&painter, rect, world, ink);
     super::legend::paint(&painter, rect, world, ink);

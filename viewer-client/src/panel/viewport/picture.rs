@@ -4,7 +4,7 @@ use egui::{Color32, Rgba};
 use glam::{UVec4, Vec3, Vec4};
 use shaders::{FrameUniforms, PALETTE_SIZE, RAMP_SIZE};
 
-use crate::camera::{Bounds, NEAR};
+use crate::camera::NEAR;
 use crate::command::{ColorMode, ColorScale, Marks, Shading};
 use crate::gpu::{PageRange, Picture};
 use crate::settings::SceneSettings;
@@ -59,7 +59,7 @@ pub(super) fn of(world: &World<'_>, size: [u32; 2], pixels_per_point: f32) -> Pi
             u32::from(cloud.marks == Marks::Ends),
             u32::from(cloud.scale == ColorScale::Log),
         ),
-        clip: clip(&world.settings.scene, world.camera.bounds()),
+        clip: world.settings.scene.clip_plane(world.camera.bounds()),
         cue: cue(world, lens.eye),
         constant: linear(theme::ACCENT),
         palette: palette(),
@@ -119,13 +119,6 @@ fn ramp(dark: bool) -> [Vec4; RAMP_SIZE] {
 
 fn linear(color: Color32) -> Vec4 {
     Rgba::from(color).to_array().into()
-}
-
-/// The plane whose positive side is drawn; without one, everything lies there.
-fn clip(scene: &SceneSettings, bounds: Bounds) -> Vec4 {
-    let Some(normal) = scene.clip.normal().map(Vec3::from) else { return Vec4::W };
-    let place = bounds.min.lerp(bounds.max, scene.cut);
-    normal.extend(-normal.dot(place))
 }
 
 /// The depth cue begins where the scene does.

@@ -6,13 +6,16 @@ use std::time::Instant;
 use egui_wgpu::RenderState;
 
 use crate::camera::{Bounds, ViewCamera};
-use crate::command::{CameraCommand, CloudCommand, Command, ImageCommand};
+use crate::command::{CameraCommand, CloudCommand, Command, ImageCommand, PathCommand, VertexStep};
 use crate::connection::{Delivery, FocusNews, Link};
 use crate::darkroom::Darkroom;
 use crate::gpu::{Quality, Renderer, Uploaded};
+use crate::history::History;
 use crate::keys;
 use crate::model::{Model, corners, drawing_aids};
 use crate::panel::{self, NOTICE_TIME, Panel, Slot};
+use crate::pick::{self, Aim, Pickable};
+use crate::selection::Selection;
 use crate::settings::Settings;
 use crate::status::{LinkState, Status};
 use crate::store::{Drawn, PAGE_POINTS, Store};
@@ -49,6 +52,12 @@ pub struct Viewer {
     orders: u32,
     /// Filters set so far: the number of the last one.
     filters: u32,
+    /// The path that is looked at, and where the user pointed to select it.
+    selection: Option<Selection>,
+    pointed: Option<Aim>,
+    history: History<Settings>,
+    /// Number of the explorer's step that is shown; the newest without.
+    scrub: Option<u64>,
 }
 
 /// What on the graphics card no longer fits what the viewer holds.
@@ -80,6 +89,10 @@ impl Viewer {
             script: Vec::new(),
             orders: 0,
             filters: 0,
+            selection: None,
+            pointed: None,
+            history: History::default(),
+            scrub: None,
         }
     }
 
@@ -110,6 +123,8 @@ impl Viewer {
         for command in commands {
             let must_wait = match command {
                 Command::Camera(_) => self.model.is_none(),
+                // Orders need a daemon that listens, and most of them and picking a path.
+                Command::Order(_) | Command::Path(_) => self.store.is_empty(),
                 Command::Image(ImageCommand::Save(_) | ImageCommand::Tev(_)) => {
                     self.darkroom.film.size() == [0, 0]
                 }
@@ -165,6 +180,9 @@ impl Viewer {
         self.status.path_rate.note(time, counts.paths);
         self.status.byte_rate.note(time, counts.bytes);
         news |= counts != before;
+        if counts != before && !self.script.is_empty() {
+            self.go_on();
+        }
         news
     }
 
@@ -176,6 +194,7 @@ impl Viewer {
                 self.store.clear();
                 self.darkroom.film.clear();
                 self.model = None;
+                self.selection = None;
                 self.stale = Stale { surfaces: true, aids: true };
             }
             self.waiting.clear();
@@ -237,9 +256,40 @@ impl Viewer {
         self.run_script(commands);
     }
 
-    /// Does what was asked for.
+    /// Does what was asked for, so that it can be undone where it changed a setting.
     pub fn apply(&mut self, command: Command) {
         tracing::trace!("{command}");
+        let restored = match command {
+            Command::Undo => self.history.undo(self.settings.clone()),
+            Command::Redo => self.history.redo(self.settings.clone()),
+            _ => {
+                let before = self.settings.clone();
+                let text = command.to_string();
+                self.carry_out(command);
+                if self.settings != before {
+                    let time = self.started.elapsed().as_secs_f64();
+                    self.history.note(before, kind(&text), time);
+                }
+                return;
+            }
+        };
+        if let Some(settings) = restored {
+            self.restore(settings);
+        }
+    }
+
+    /// Goes back, or forth, to other settings.
+    fn restore(&mut self, settings: Settings) {
+        let left = std::mem::replace(&mut self.settings, settings);
+        self.stale.aids = true;
+        self.store.set_budget(budget_bytes(self.settings.cloud.budget_mib));
+        self.store.set_drawn(drawn(self.settings.cloud.dim));
+        if left.filter != self.settings.filter {
+            self.ask_for_paths();
+        }
+    }
+
+    fn carry_out(&mut self, command: Command) {
         // The model of the camera would stand before the user's eyes.
         self.stale.aids |= matches!(command, Command::Camera(CameraCommand::Through(_)));
         match command {
@@ -249,9 +299,7 @@ impl Viewer {
                 match command {
                     CloudCommand::Clear => self.store.clear(),
                     CloudCommand::Budget(mib) => self.store.set_budget(budget_bytes(mib)),
-                    CloudCommand::Dim(x) => {
-                        self.store.set_drawn(if x > 0.0 { Drawn::All } else { Drawn::Matched });
-                    }
+                    CloudCommand::Dim(x) => self.store.set_drawn(drawn(x)),
                     _ => {}
                 }
             }
@@ -269,6 +317,12 @@ impl Viewer {
             }
             Command::Layout(command) => self.settings.layout.apply(command),
             Command::Order(order) => self.send(order),
+            Command::Path(PathCommand::Pick(aim)) => self.pick(aim),
+            Command::Path(PathCommand::Deselect) => self.selection = None,
+            Command::Path(PathCommand::Vertex(step)) => self.look_at_vertex(step),
+            Command::Scrub(number) => self.scrub = number,
+            // What these change is not what they can undo.
+            Command::Undo | Command::Redo => {}
             Command::Reconnect => {
                 if let Some(link) = &self.link {
                     link.retry_now();
@@ -288,6 +342,47 @@ impl Viewer {
         {
             let problem = "The filter was not sent: the daemon is busy; set it again.";
             self.status.say(Err(problem.to_owned()));
+        }
+    }
+
+    /// Selects the path under the cursor; where that is the selected one, the next one there.
+    fn pick(&mut self, aim: Aim) {
+        let lens = self.camera.lens(1.0);
+        let scene = &self.settings.scene;
+        let clip = scene.clip_plane(self.camera.bounds());
+        let mesh = self.model.as_ref().map(|model| &model.mesh).filter(|_| scene.covers());
+        let surface = mesh
+            .and_then(|mesh| pick::surface_at(mesh, &lens, aim.at, !scene.cutaway, clip))
+            .map(|(depth, _)| depth);
+        let newest = Pickable { newest: self.settings.cloud.shown as usize, clip };
+        let hits = pick::paths_at(&self.store, &lens, aim, newest, surface);
+        let again = self.pointed.is_some_and(|before| before.is_near(aim));
+        let selected = self.selection.as_ref().filter(|_| again).map(|s| s.header.id);
+        let found: Vec<Selection> = hits
+            .iter()
+            .filter_map(|hit| {
+                let page = self.store.page(hit.page)?;
+                let path = page.paths().get(hit.index)?;
+                Some(Selection::new(path.header, page.vertices(path).to_vec()))
+            })
+            .collect();
+        let last = found.iter().position(|s| Some(s.header.id) == selected);
+        let next = last.map_or(0, |index| (index + 1) % found.len());
+        let count = found.len();
+        self.selection = found.into_iter().nth(next);
+        if let Some(selection) = &mut self.selection {
+            selection.place = (next + 1, count);
+        }
+        self.pointed = Some(aim);
+    }
+
+    fn look_at_vertex(&mut self, step: VertexStep) {
+        let Some(selection) = &mut self.selection else { return };
+        selection.go(step);
+        let vertex = selection.vertex.and_then(|index| selection.vertices.get(index));
+        if let Some(vertex) = vertex {
+            let near = 0.4 * self.camera.bounds().radius();
+            self.camera.apply(CameraCommand::Focus(vertex.position, near));
         }
     }
 
@@ -312,6 +407,9 @@ impl Viewer {
             store: &self.store,
             film: &self.darkroom.film,
             reference: self.darkroom.reference.as_ref(),
+            selection: self.selection.as_ref(),
+            moment: self.status.steering.focus.moment(self.scrub),
+            scrub: self.scrub,
             model: self.model.as_ref(),
             now: Instant::now(),
         };
@@ -381,6 +479,18 @@ impl Viewer {
     pub fn bounds(&self) -> Option<Bounds> {
         self.model.as_ref().map(|model| model.bounds)
     }
+}
+
+/// The first two words of a command: what it concerns.
+fn kind(text: &str) -> &str {
+    let second = text.find(' ').map_or(text.len(), |i| i + 1);
+    let end = text[second..].find(' ').map_or(text.len(), |i| second + i);
+    &text[..end]
+}
+
+/// Which paths are drawn when those that the filter leaves out have this opacity.
+fn drawn(dim: f32) -> Drawn {
+    if dim > 0.0 { Drawn::All } else { Drawn::Matched }
 }
 
 /// Appends what is missing on the graphics card, newest pages first, since they are looked at.

@@ -1,0 +1,216 @@
+//! The explorer: one chain that the user seeds and steps, and what became of each of its steps.
+
+mod moment;
+mod timeline;
+
+use common::{
+    ExplorerCommand, ExplorerState, LeaseRequest, MAX_RATE, Order, Pace, Role, Seed, SkipTo,
+    StrategyId,
+};
+use egui::{Button, ComboBox, DragValue, RichText, Ui};
+
+use super::Panel;
+use super::widgets::{Scale, dot, empty_state, row, slider};
+use crate::command::Command;
+use crate::format;
+use crate::theme;
+use crate::world::World;
+
+/// Slowest play that the slider offers; scripts can ask for less.
+const SLOWEST: f32 = 0.1;
+
+/// The controls of the explorer.
+#[derive(Debug)]
+pub(super) struct ExplorerPanel {
+    /// Steps a second that play begins with.
+    rate: f32,
+    /// Proposals of a fan.
+    fan: u32,
+    /// The strategy of fans and skips.
+    strategy: u8,
+}
+
+impl Default for ExplorerPanel {
+    fn default() -> Self {
+        Self { rate: 2.0, fan: 32, strategy: 0 }
+    }
+}
+
+impl Panel for ExplorerPanel {
+    fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+        lease(ui, world, commands);
+        let drives = world.status.role() == Role::Driver;
+        let mut order = |command| commands.push(Command::Order(Order::Explorer(command)));
+        ui.add_enabled_ui(drives, |ui| seed(ui, world, &mut order));
+        let state = &world.status.steering.explorer;
+        if state.current.is_none() {
+            empty_state(
+                ui,
+                "Nothing to explore yet",
+                "Select a path in the view and press Enter: the daemon perturbs it, and shows every \
+                 proposal here.",
+            );
+            return;
+        }
+        ui.add_enabled_ui(drives, |ui| {
+            self.transport(ui, state, &mut order);
+            self.targeted(ui, world, &mut order);
+            allowed(ui, world, state, &mut order);
+        });
+        tally(ui, state, world);
+        timeline::show(ui, world, commands);
+        if let Some(shown) = world.moment {
+            moment::show(ui, world, shown);
+        }
+    }
+}
+
+/// Who steers, and how to become the one.
+fn lease(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    let steering = &world.status.steering;
+    let mut ask = |ui: &mut Ui, label: &str, tip: &str, request| {
+        if ui.button(label).on_hover_text(tip).clicked() {
+            commands.push(Command::Order(Order::Lease(request)));
+        }
+    };
+    ui.horizontal_wrapped(|ui| {
+        if world.status.role() == Role::Driver {
+            ui.label(RichText::new("You drive").color(theme::GOOD));
+            ask(ui, "Let go", "Let another viewer steer", LeaseRequest::Release);
+        } else {
+            let text = match steering.presence.driver() {
+                Some(driver) => format!("{} drives; you watch", driver.author.name),
+                None => "Nobody drives; you watch".to_owned(),
+            };
+            ui.label(RichText::new(text).weak());
+            ask(ui, "Ask to drive", "Only the driver may steer", LeaseRequest::Ask);
+        }
+    });
+    if let Some(remark) = steering.remarks.back() {
+        ui.label(RichText::new(remark).small().weak()).on_hover_text("What the daemon said last");
+    }
+}
+
+/// Where the explorer starts.
+fn seed(ui: &mut Ui, world: &World<'_>, order: &mut impl FnMut(ExplorerCommand)) {
+    ui.horizontal(|ui| {
+        let selected = world.selection.map(|selection| selection.header.id);
+        let button = Button::new("Explore the selected path");
+        let tip = "Makes it the explorer's current path (Enter)";
+        let clicked = ui.add_enabled(selected.is_some(), button).on_hover_text(tip).clicked();
+        if let Some(id) = selected.filter(|_| clicked) {
+            order(ExplorerCommand::Seed(Seed::Path(id)));
+        }
+        if ui.button("Newest").on_hover_text("Explore the path that came last").clicked() {
+            order(ExplorerCommand::Seed(Seed::Newest));
+        }
+    });
+}
+
+impl ExplorerPanel {
+    fn transport(
+        &mut self,
+        ui: &mut Ui,
+        state: &ExplorerState,
+        order: &mut impl FnMut(ExplorerCommand),
+    ) {
+        ui.horizontal(|ui| {
+            if state.pace == Pace::Paused {
+                if ui.button("Play").on_hover_text("Step by itself (K)").clicked() {
+                    order(ExplorerCommand::Play(self.rate));
+                }
+            } else if ui.button("Pause").on_hover_text("Stand still (K)").clicked() {
+                order(ExplorerCommand::Pause);
+            }
+            if ui.button("Step").on_hover_text("One proposal (N)").clicked() {
+                order(ExplorerCommand::Step(1));
+            }
+            let tip = "On to the next accepted proposal (Shift+N)";
+            if ui.button("To acceptance").on_hover_text(tip).clicked() {
+                order(ExplorerCommand::Skip(SkipTo::Acceptance));
+            }
+        });
+        if state.pace == Pace::Playing {
+            self.rate = state.rate;
+        }
+        let tip = "Steps a second while it plays";
+        let scale = Scale::logarithmic(SLOWEST..=MAX_RATE, 1).suffix(" /s");
+        if let Some(rate) = slider(ui, "Pace", tip, self.rate, scale) {
+            self.rate = rate;
+            if state.pace == Pace::Playing {
+                order(ExplorerCommand::Play(rate));
+            }
+        }
+    }
+
+    /// What concerns one strategy: a fan of its proposals, and its next step.
+    fn targeted(
+        &mut self,
+        ui: &mut Ui,
+        world: &World<'_>,
+        order: &mut impl FnMut(ExplorerCommand),
+    ) {
+        let names = world.names().strategies;
+        row(ui, "Of", "The strategy of the fan, and of the skip", |ui| {
+            let chosen = world.strategy_name(usize::from(self.strategy));
+            ComboBox::from_id_salt("of")
+                .width(92.0)
+                .selected_text(chosen)
+                .show_ui(ui, |ui| {
+                    for (name, number) in names.iter().zip(0..) {
+                        ui.selectable_value(&mut self.strategy, number, name);
+                    }
+                })
+                .response
+                .on_hover_text("Strategy of the fan and of the skip");
+            let strategy = StrategyId(self.strategy);
+            let tip = "On to the next step of this strategy";
+            if ui.button("Skip to").on_hover_text(tip).clicked() {
+                order(ExplorerCommand::Skip(SkipTo::Strategy(strategy)));
+            }
+            let tip = "Shows so many proposals of this strategy without moving";
+            if ui.button("Fan").on_hover_text(tip).clicked() {
+                order(ExplorerCommand::Fan { strategy, count: self.fan });
+            }
+            ui.add(DragValue::new(&mut self.fan).range(1..=200))
+                .on_hover_text("Proposals of a fan");
+        });
+    }
+}
+
+/// Which strategies may act.
+fn allowed(
+    ui: &mut Ui,
+    world: &World<'_>,
+    state: &ExplorerState,
+    order: &mut impl FnMut(ExplorerCommand),
+) {
+    ui.horizontal_wrapped(|ui| {
+        for (index, name) in world.names().strategies.iter().enumerate().take(64) {
+            let strategy = StrategyId(index as u8);
+            let is_in = state.allowed.contains(strategy);
+            dot(ui, theme::strategy_color(index));
+            let button = Button::selectable(is_in, RichText::new(name).small());
+            if ui.add(button).on_hover_text("Whether this strategy may act").clicked() {
+                order(ExplorerCommand::Allow(state.allowed.with(strategy, !is_in)));
+            }
+        }
+    });
+}
+
+fn tally(ui: &mut Ui, state: &ExplorerState, world: &World<'_>) {
+    let share = format::percent(state.accepted as f64, state.steps as f64);
+    let missed = match world.status.steering.focus.missed {
+        0 => String::new(),
+        steps => format!(", {} missed", format::count(steps as f64)),
+    };
+    let text = format!(
+        "{} steps since the seed, {} accepted ({share}){missed}",
+        format::count(state.steps as f64),
+        format::count(state.accepted as f64),
+    );
+    ui.label(RichText::new(text).weak());
+}
+
+#[cfg(test)]
+mod tests;

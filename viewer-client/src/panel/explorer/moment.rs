@@ -1,0 +1,138 @@
+//! One step of the explorer: what was changed, how probable its acceptance was, and its fate.
+
+use common::{FocusOutcome, VertexRecord};
+use egui::{Align2, Color32, FontId, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
+
+use crate::panel::widgets::{dot, row};
+use crate::steering::Moment;
+use crate::theme;
+use crate::world::World;
+
+/// Shows a step.
+pub(super) fn show(ui: &mut Ui, world: &World<'_>, moment: &Moment) {
+    let step = &moment.step;
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        dot(ui, theme::strategy_color(usize::from(step.strategy.0)));
+        ui.label(RichText::new(world.strategy_name(usize::from(step.strategy.0))).strong());
+        let fan = if step.fan { "fan, " } else { "" };
+        ui.label(RichText::new(format!("{fan}no. {}", step.number)).weak());
+    });
+    let (word, color) = fate(world, step.outcome);
+    ui.label(RichText::new(word).color(color).strong());
+    acceptance_bar(ui, step.acceptance as f32, color);
+    classes(ui, moment);
+    if step.is_complete() {
+        factors(ui, moment);
+    }
+    row(ui, "Rays", "Rays traced for the proposal", |ui| {
+        ui.label(RichText::new(step.rays.to_string()).monospace())
+    });
+}
+
+/// What became of a step, in words and a colour; the words say it all.
+pub(super) fn fate(world: &World<'_>, outcome: FocusOutcome) -> (String, Color32) {
+    match outcome {
+        FocusOutcome::Accepted => ("Accepted".to_owned(), theme::GOOD),
+        FocusOutcome::Rejected => ("Rejected".to_owned(), theme::BUSY),
+        FocusOutcome::Failed(reason) => {
+            let reason = world.failure_reason(usize::from(reason));
+            (format!("Failed: {reason}"), theme::BAD)
+        }
+    }
+}
+
+/// The acceptance probability as a bar and a number.
+fn acceptance_bar(ui: &mut Ui, a: f32, color: Color32) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
+    let painter = ui.painter();
+    painter.rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
+    let mut filled = rect;
+    filled.set_width(rect.width() * a.clamp(0.0, 1.0));
+    painter.rect_filled(filled, 3.0, color.gamma_multiply(0.55));
+    let line = ui.visuals().widgets.noninteractive.bg_stroke;
+    painter.rect_stroke(rect, 3.0, line, StrokeKind::Inside);
+    let text = format!("a = {a:.4}");
+    let ink = ui.visuals().strong_text_color();
+    painter.text(rect.center(), Align2::CENTER_CENTER, text, FontId::monospace(12.0), ink);
+    response.on_hover_text("Probability that the chain goes from the path x to its proposal y");
+}
+
+/// The path before and after, letter by letter, with what was deleted and what is new.
+fn classes(ui: &mut Ui, moment: &Moment) {
+    let step = &moment.step;
+    let before = &moment.before.vertices;
+    let kept_from = before.len().saturating_sub(step.kept_eye);
+    let is_kept = |i: usize| i < step.kept_light || i >= kept_from;
+    row(ui, "Deleted", "The path before; struck out is what the proposal replaces", |ui| {
+        letters(ui, before, |i| if is_kept(i) { Mark::Kept } else { Mark::Deleted });
+    });
+    if let Some(after) = moment.proposal() {
+        let new_to = after.len().saturating_sub(step.kept_eye);
+        let is_new = |i: usize| i >= step.kept_light && i < new_to;
+        row(ui, "Proposed", "The proposed path; in a frame is what is new", |ui| {
+            letters(ui, &after, |i| if is_new(i) { Mark::New } else { Mark::Kept });
+        });
+    } else {
+        let made = [step.inserted.as_slice(), step.eye_side.as_slice()].concat();
+        row(ui, "Came to", "The vertices that were made until it failed", |ui| {
+            letters(ui, &made, |_| Mark::New);
+        });
+    }
+}
+
+/// How a letter is shown: never by its colour alone.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Mark {
+    Kept,
+    Deleted,
+    New,
+}
+
+fn letters(ui: &mut Ui, vertices: &[VertexRecord], mark: impl Fn(usize) -> Mark) {
+    ui.spacing_mut().item_spacing.x = 3.0;
+    if vertices.is_empty() {
+        ui.label(RichText::new("nothing").weak());
+    }
+    for (i, vertex) in vertices.iter().enumerate() {
+        let letter = RichText::new(vertex.kind.letter().to_string()).monospace();
+        match mark(i) {
+            Mark::Kept => ui.label(letter),
+            Mark::Deleted => ui.label(letter.strikethrough().color(theme::DELETED)),
+            Mark::New => {
+                let response = ui.label(letter.strong().color(theme::PROPOSED));
+                let frame = response.rect.expand2(vec2(1.5, 0.0));
+                let stroke = Stroke::new(1.0, theme::PROPOSED);
+                ui.painter().rect_stroke(frame, 2.0, stroke, StrokeKind::Outside);
+                response
+            }
+        };
+    }
+}
+
+/// What the acceptance probability is made of.
+fn factors(ui: &mut Ui, moment: &Moment) {
+    let f = &moment.step.factors;
+    let number = |value: f64| format!("{value:.4e}");
+    let lines = [
+        ("Q(y | x)", number(f.forward), "Density of proposing y from x, over the luminance of y"),
+        ("Q(x | y)", number(f.backward), "The same for the way back"),
+        (
+            "Z(x) / Z(y)",
+            ratio(f.mixture_current, f.mixture_proposed),
+            "Weights of the strategies that can act on x, over those on y",
+        ),
+        (
+            "r",
+            ratio(f.backward * f.mixture_current, f.forward * f.mixture_proposed),
+            "Q(x | y) / Q(y | x) times Z(x) / Z(y); a is the lesser of r and 1",
+        ),
+    ];
+    for (label, value, tip) in lines {
+        row(ui, label, tip, |ui| ui.label(RichText::new(value).monospace()));
+    }
+}
+
+fn ratio(over: f64, under: f64) -> String {
+    if under > 0.0 { format!("{:.4}", over / under) } else { "0: no way back".to_owned() }
+}

@@ -1,0 +1,72 @@
+//! The last steps of the explorer, one bar each, to go back to.
+
+use common::FocusOutcome;
+use egui::{Sense, Stroke, Ui, pos2, vec2};
+
+use super::moment::fate;
+use crate::command::Command;
+use crate::theme;
+use crate::world::World;
+
+/// Width of a bar with its gap, and height of the strip, in points.
+const PITCH: f32 = 5.0;
+const HEIGHT: f32 = 44.0;
+
+/// Shows the timeline.
+pub(super) fn show(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    let moments = world.status.steering.focus.moments();
+    let size = vec2(ui.available_width(), HEIGHT);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+    ui.painter().rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
+    let room = (rect.width() / PITCH) as usize;
+    let shown = world.moment.map(|moment| moment.step.number);
+    // What is looked at stays in sight.
+    let last = match world.scrub {
+        Some(number) => moments.partition_point(|m| m.step.number <= number + room as u64 / 2),
+        None => moments.len(),
+    };
+    let first = last.saturating_sub(room);
+    for (i, moment) in moments.range(first..last).enumerate() {
+        let step = &moment.step;
+        let x = rect.left() + (i as f32 + 0.5) * PITCH;
+        let (_, color) = fate(world, step.outcome);
+        let failed = matches!(step.outcome, FocusOutcome::Failed(_));
+        let height = if failed { 5.0 } else { 7.0 + step.acceptance as f32 * (HEIGHT - 17.0) };
+        let foot = rect.bottom() - 7.0;
+        let stroke = Stroke::new(PITCH - 2.0, color);
+        ui.painter().line_segment([pos2(x, foot), pos2(x, foot - height)], stroke);
+        let strategy = theme::strategy_color(usize::from(step.strategy.0));
+        ui.painter().circle_filled(pos2(x, rect.bottom() - 3.0), 1.8, strategy);
+        if shown == Some(step.number) {
+            let ink = ui.visuals().strong_text_color();
+            let line = [pos2(x, rect.top()), pos2(x, rect.bottom())];
+            ui.painter().line_segment(line, Stroke::new(1.0, ink));
+        }
+    }
+    let pointed = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on());
+    if let Some(place) = pointed {
+        let index = first + ((place.x - rect.left()) / PITCH).max(0.0) as usize;
+        if let Some(moment) = moments.get(index.min(last.saturating_sub(1))) {
+            commands.push(Command::Scrub(Some(moment.step.number)));
+        }
+    }
+    response.on_hover_text(
+        "The last steps: bars as high as a, short stubs for failures, a dot for the strategy. Click \
+         or drag to go back to one.",
+    );
+    ui.horizontal(|ui| {
+        let mut scrub = |ui: &mut Ui, label: &str, tip: &str, to: Option<Option<u64>>| {
+            let clicked = ui.add_enabled(to.is_some(), egui::Button::new(label).small());
+            if let Some(to) = to.filter(|_| clicked.on_hover_text(tip).clicked()) {
+                commands.push(Command::Scrub(to));
+            }
+        };
+        let place = shown.map(|n| moments.partition_point(|m| m.step.number < n));
+        let number = |index: Option<usize>| {
+            index.and_then(|i| moments.get(i)).map(|moment| Some(moment.step.number))
+        };
+        scrub(ui, "Back", "The step before", number(place.and_then(|i| i.checked_sub(1))));
+        scrub(ui, "Forward", "The step after", number(place.map(|i| i + 1)));
+        scrub(ui, "Live", "Follow the newest step", world.scrub.map(|_| None));
+    });
+}

@@ -1,0 +1,131 @@
+//! The path that the user looks at: a copy, so that it stays when the store drops the original.
+
+use common::{PathHeader, SceneFrame, SceneMesh, VertexRecord, decode_normal};
+use glam::{DVec3, Vec3};
+
+use crate::command::VertexStep;
+use crate::store::class_name;
+
+/// A selected path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Selection {
+    /// All but the vertices.
+    pub header: PathHeader,
+    /// From the light to the lens.
+    pub vertices: Vec<VertexRecord>,
+    /// The vertex that is looked at.
+    pub vertex: Option<usize>,
+    /// Which of the paths under the cursor it is, counted from one, and how many there are.
+    pub place: (usize, usize),
+}
+
+/// What names and units the panels and the text form of a path need.
+#[derive(Clone, Copy, Debug)]
+pub struct Names<'a> {
+    /// How scene units relate to those of the file.
+    pub frame: Option<SceneFrame>,
+    /// Names of the strategies.
+    pub strategies: &'a [String],
+    /// The surfaces, for their materials.
+    pub mesh: Option<&'a SceneMesh>,
+}
+
+impl Names<'_> {
+    /// A point in the units of the scene file.
+    pub fn world(&self, position: [f32; 3]) -> DVec3 {
+        let scene = Vec3::from(position).as_dvec3();
+        self.frame.map_or(scene, |frame| frame.to_world(scene))
+    }
+
+    /// The name of a material.
+    pub fn material(&self, index: u16) -> &str {
+        let materials = self.mesh.map(|mesh| mesh.materials.as_slice()).unwrap_or_default();
+        materials.get(usize::from(index)).map_or("–", |material| material.name.as_str())
+    }
+
+    /// The name of the strategy that proposed a path.
+    pub fn strategy(&self, header: &PathHeader) -> &str {
+        let name = self.strategies.get(usize::from(header.strategy.0));
+        match name {
+            Some(name) => name,
+            None if header.strategy == PathHeader::NO_STRATEGY => "seed",
+            None => "unknown strategy",
+        }
+    }
+}
+
+impl Selection {
+    /// A path of which no vertex is looked at.
+    pub fn new(header: PathHeader, vertices: Vec<VertexRecord>) -> Self {
+        Self { header, vertices, vertex: None, place: (1, 1) }
+    }
+
+    /// Goes to another vertex, round the ends.
+    pub fn go(&mut self, step: VertexStep) {
+        let Some(last) = self.vertices.len().checked_sub(1) else { return };
+        self.vertex = Some(match (step, self.vertex) {
+            (VertexStep::To(index), _) => usize::from(index).min(last),
+            (VertexStep::Next, None) => 0,
+            (VertexStep::Previous, None) => last,
+            (VertexStep::Next, Some(index)) => (index + 1) % (last + 1),
+            (VertexStep::Previous, Some(index)) => (index + last) % (last + 1),
+        });
+    }
+
+    /// Its class with blanks, such as `L S S D E`.
+    pub fn class(&self) -> String {
+        let letters: Vec<String> = class_name(&self.vertices).chars().map(String::from).collect();
+        letters.join(" ")
+    }
+
+    /// Its number of edges.
+    pub fn edge_count(&self) -> usize {
+        self.vertices.len().saturating_sub(1)
+    }
+
+    /// The length of the edge before a vertex, in the units of the file.
+    pub fn edge_length(&self, vertex: usize, names: &Names<'_>) -> Option<f64> {
+        let before = self.vertices.get(vertex.checked_sub(1)?)?;
+        let here = self.vertices.get(vertex)?;
+        Some((names.world(here.position) - names.world(before.position)).length())
+    }
+
+    /// Everything that is known of it, as text for the clipboard.
+    pub fn text(&self, names: &Names<'_>) -> String {
+        let h = &self.header;
+        let [r, g, b] = h.rgb;
+        let mut text = format!(
+            "path {}  class {}  {} edges\nstrategy {}  acceptance {:.6}  dwell {}  weight {}\n\
+             luminance {:.6e}  colour {r:.4} {g:.4} {b:.4}  film {:.6} {:.6}\n",
+            h.id,
+            self.class(),
+            self.edge_count(),
+            names.strategy(h),
+            h.acceptance,
+            h.dwell,
+            h.weight,
+            h.luminance,
+            h.film[0],
+            h.film[1],
+        );
+        for (i, vertex) in self.vertices.iter().enumerate() {
+            let p = names.world(vertex.position);
+            let n = decode_normal(vertex.normal);
+            let line = format!(
+                "x{i} {} {:<8} position {:.6} {:.6} {:.6}  normal {:.4} {:.4} {:.4}  material {}",
+                vertex.kind.letter(),
+                vertex.event.name(),
+                p.x,
+                p.y,
+                p.z,
+                n.x,
+                n.y,
+                n.z,
+                names.material(vertex.material),
+            );
+            text.push_str(&line);
+            text.push('\n');
+        }
+        text
+    }
+}
