@@ -10,6 +10,7 @@ use common::{Filter, Order};
 
 use crate::command::{self, Command};
 use crate::connection::{Bearer, Fingerprint, Peer, Trust};
+use crate::share;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -54,8 +55,9 @@ pub enum Action {
 /// How to view.
 #[derive(Clone, Debug, Args)]
 pub struct ViewArgs {
-    /// HOST:PORT of a running daemon; without it, one is started inside this program.
-    #[arg(value_name = "ADDR", value_parser = address)]
+    /// HOST:PORT of a running daemon, or a link to a view of one (lvis://...); without it, a daemon is
+    /// started inside this program.
+    #[arg(value_name = "ADDR", value_parser = address_or_link)]
     pub address: Option<String>,
     /// How a daemon elsewhere is trusted.
     #[command(flatten)]
@@ -190,6 +192,14 @@ fn address(text: &str) -> Result<String, String> {
     }
 }
 
+fn address_or_link(text: &str) -> Result<String, String> {
+    if !text.starts_with(share::SCHEME) {
+        return address(text);
+    }
+    let shared = share::read(text).map_err(|error| error.to_string())?;
+    address(&shared.address).map(|_| text.to_owned())
+}
+
 /// A filter whose grammar is right; whether its names are is for the daemon to say.
 fn filter(text: &str) -> Result<String, String> {
     match Filter::parse(text) {
@@ -258,6 +268,8 @@ mod tests {
     fn nonsense_is_refused() {
         for line in [
             "viewer-client nowhere",
+            "viewer-client lvis://nowhere#camera%20frame",
+            "viewer-client lvis://127.0.0.1:5#quit",
             "viewer-client watch 127.0.0.1:5 --filter edges",
             "viewer-client watch 127.0.0.1:5 --order explorer",
             "viewer-client :50061",

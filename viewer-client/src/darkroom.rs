@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::command::ImageCommand;
-use crate::errand::{Errand, Errands};
+use crate::errand::{Errand, Errands, Outcome};
 use crate::film::Film;
 use crate::imaging::{self, Reference, Sources};
 use crate::settings::ImageSettings;
@@ -40,6 +40,11 @@ impl Darkroom {
         if let Err(problem) = started {
             status.say(Err(problem));
         }
+    }
+
+    /// Does something else that takes long; the answer tells why it cannot begin now.
+    pub fn run(&mut self, work: impl FnOnce() -> Outcome + Send + 'static) -> Result<(), String> {
+        self.errands.start(work)
     }
 
     fn load(&mut self, file: &str) -> Result<(), String> {

@@ -4,9 +4,10 @@ use common::{ExplorerCommand, MIN_RATE, Order, Pace, Seed, SkipTo};
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use crate::command::{
-    CameraCommand, CloudCommand, ColorMode, Command, ImageCommand, LayoutCommand, PanelName,
-    PathCommand, SceneCommand, Shading, Side, Switch, ThemeName, VertexStep,
+    CameraCommand, CloudCommand, ColorMode, Command, DeskCommand, ImageCommand, LayoutCommand,
+    PanelName, PathCommand, SceneCommand, Shading, Side, Switch, ThemeName, VertexStep,
 };
+use crate::settings::SCALES;
 use crate::world::World;
 
 /// A key and its command.
@@ -158,6 +159,11 @@ pub const BINDINGS: &[Binding] = &[
     bind(plain(Key::T), Group::View, "dark or light", |_| {
         Command::Layout(LayoutCommand::Theme(ThemeName::Toggle))
     }),
+    bind(ctrl(Key::Plus), Group::View, "larger texts and buttons", |w| scale(w, 10)),
+    bind(ctrl(Key::Minus), Group::View, "smaller texts and buttons", |w| scale(w, -10)),
+    bind(ctrl(Key::L), Group::View, "copy a link to this view", |_| {
+        Command::Desk(DeskCommand::Share)
+    }),
     bind(plain(Key::R), Group::View, "connect now", |_| Command::Reconnect),
     bind(plain(Key::F1), Group::View, "this sheet; ? does it, too", |_| help()),
     bind(ctrl(Key::Q), Group::View, "quit", |_| Command::Quit),
@@ -216,6 +222,12 @@ fn panel(name: PanelName) -> Command {
 fn width(world: &World<'_>, factor: f32) -> Command {
     let width = (world.settings.cloud.width * factor).clamp(0.25, 20.0);
     Command::Cloud(CloudCommand::Width(width))
+}
+
+/// The interface larger by `percent`.
+fn scale(world: &World<'_>, percent: i16) -> Command {
+    let scale = world.settings.layout.scale.saturating_add_signed(percent);
+    Command::Layout(LayoutCommand::Scale(scale.clamp(*SCALES.start(), *SCALES.end())))
 }
 
 fn exposure(world: &World<'_>, stops: f32) -> Command {

@@ -9,7 +9,7 @@ use crate::cli::{Action, Cli, ViewArgs};
 use crate::connection::Peer;
 use crate::headless::Wait;
 use crate::status::Status;
-use crate::{bench, embedded, headless, script, watch, window};
+use crate::{bench, embedded, headless, script, share, watch, window};
 
 /// A picture is taken after this long when nothing else is asked for.
 const DEFAULT_WAIT: Duration = Duration::from_secs(5);
@@ -24,10 +24,20 @@ pub fn run(cli: Cli) -> anyhow::Result<()> {
 }
 
 fn view(args: &ViewArgs) -> anyhow::Result<()> {
-    let commands = args.run.as_deref().map(script::read).transpose()?.unwrap_or_default();
+    let link = args.address.as_deref().filter(|text| text.starts_with(share::SCHEME));
+    let shared = link.map(share::read).transpose()?;
+    let mut commands = Vec::new();
+    let address = match shared {
+        Some(shared) => {
+            commands.extend(shared.commands);
+            Some(shared.address)
+        }
+        None => args.address.clone(),
+    };
+    commands.extend(args.run.as_deref().map(script::read).transpose()?.unwrap_or_default());
     // The daemon must outlive the viewer, which says goodbye to it.
-    let (peer, daemon) = if let Some(address) = &args.address {
-        (args.trust.peer(address.clone())?, None)
+    let (peer, daemon) = if let Some(address) = address {
+        (args.trust.peer(address)?, None)
     } else {
         let daemon = embedded::start(args.scene.as_deref().unwrap_or(embedded::DEFAULT_SCENE))?;
         (Peer::open(daemon.address().to_string()), Some(daemon))

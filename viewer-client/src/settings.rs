@@ -254,6 +254,7 @@ impl ImageSettings {
 }
 
 /// What the window holds.
+#[expect(clippy::struct_excessive_bools, reason = "three switches of one window")]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
     /// Which panels are open, in the order of [`PanelName::ALL`].
@@ -262,11 +263,19 @@ pub struct Layout {
     pub dark: bool,
     /// The sheet of keys is open.
     pub help: bool,
+    /// The first steps are shown.
+    pub hint: bool,
+    /// Size of texts and buttons in percent, within [`SCALES`].
+    pub scale: u16,
 }
+
+/// Sizes of the interface in percent.
+pub const SCALES: std::ops::RangeInclusive<u16> = 50..=300;
 
 impl Default for Layout {
     fn default() -> Self {
-        Self { open: [true; PanelName::ALL.len()], dark: true, help: false }
+        let open = [true; PanelName::ALL.len()];
+        Self { open, dark: true, help: false, hint: false, scale: 100 }
     }
 }
 
@@ -284,6 +293,8 @@ impl Layout {
             LayoutCommand::Theme(ThemeName::Light) => self.dark = false,
             LayoutCommand::Theme(ThemeName::Toggle) => self.dark = !self.dark,
             LayoutCommand::Help(switch) => switch.apply(&mut self.help),
+            LayoutCommand::Hint(switch) => switch.apply(&mut self.hint),
+            LayoutCommand::Scale(percent) => self.scale = percent,
         }
     }
 }

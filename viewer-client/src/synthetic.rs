@@ -41,7 +41,7 @@ pub(crate) fn welcome() -> Welcome {
 }
 
 /// A grey wall at z = -512 that fills the scene's bounds, which reach to z = 512.
-fn mesh() -> SceneMesh {
+pub(crate) fn mesh() -> SceneMesh {
     let material = |name: &str, emission| MaterialInfo {
         name: name.to_owned(),
         model: "lambert".to_owned(),

@@ -94,6 +94,8 @@ pub fn ramp(dark: bool) -> [Color32; RAMP_SIZE] {
 pub fn install(ctx: &egui::Context) {
     ctx.set_visuals_of(Theme::Dark, dark());
     ctx.set_visuals_of(Theme::Light, light());
+    // The size of the interface is a setting like others, with keys of its own.
+    ctx.options_mut(|options| options.zoom_with_keyboard = false);
     ctx.all_styles_mut(|style| {
         let spacing = &mut style.spacing;
         spacing.item_spacing = vec2(8.0, 5.0);

@@ -8,7 +8,9 @@ use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 
 use crate::app::Viewer;
 use crate::connection::{Link, Peer, Waker};
+use crate::desk::Connect;
 use crate::gpu::Quality;
+use crate::habits::Habits;
 use crate::pace::{FRAME, Pace};
 
 /// The window's first size in points.
@@ -48,8 +50,14 @@ pub fn run(viewer: Viewer, peer: Peer) -> anyhow::Result<()> {
         Viewer::install(&cc.egui_ctx, gpu, quality(gpu));
         let mut viewer = viewer;
         let ctx = cc.egui_ctx.clone();
-        let waker: Waker = Box::new(move || ctx.request_repaint_after(FRAME));
-        viewer.set_link(Link::start(peer, waker)?);
+        let connect: Connect = Box::new(move |peer| {
+            let ctx = ctx.clone();
+            let waker: Waker = Box::new(move || ctx.request_repaint_after(FRAME));
+            Link::start(peer, waker)
+        });
+        viewer.set_link(connect(peer)?);
+        let habits = Habits::file().map(|file| Habits::load(&file)).unwrap_or_default();
+        viewer.adopt(habits, connect);
         let app: Box<dyn eframe::App> = Box::new(Window { viewer, pace: Pace::default() });
         Ok(app)
     };
@@ -93,6 +101,13 @@ impl eframe::App for Window {
         self.viewer.ui(ui);
         if self.viewer.is_closing() {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+
+    fn on_exit(&mut self) {
+        let Some(file) = Habits::file() else { return };
+        if let Err(error) = self.viewer.habits().save(&file) {
+            tracing::warn!("{} cannot be written: {error}", file.display());
         }
     }
 }

@@ -35,6 +35,8 @@ pub struct World<'a> {
     pub moment: Option<&'a Moment>,
     /// See [`World::moment`].
     pub scrub: Option<u64>,
+    /// HOST:PORT of daemons that were watched, the newest first.
+    pub recent: &'a [String],
     /// The scene, once it has come.
     pub model: Option<&'a Model>,
     /// When the frame began.

@@ -1,8 +1,8 @@
 //! How long a chain remembers: means over ever longer blocks of its steps
 //! [Flyvbjerg and Petersen 1989].
 //!
-//! Blocks of two are merged from level to level, so that a step costs two additions on average and
-//! nothing is stored but sums.
+//! Blocks of two are merged from level to level, and nothing is stored but sums. A chain that stays
+//! takes in the same value again and again; that is done for the whole stay at once.
 
 /// Levels: blocks of up to 2^40 steps.
 const LEVELS: usize = 41;
@@ -20,6 +20,37 @@ struct Level {
 }
 
 impl Level {
+    /// Takes in a block; the answer is the mean of a pair that it completes.
+    #[inline]
+    fn take_one(&mut self, mean: f64) -> Option<f64> {
+        self.count += 1;
+        self.sum += mean;
+        self.squares += mean * mean;
+        if self.count.is_multiple_of(2) {
+            return Some(0.5 * (self.waiting + mean));
+        }
+        self.waiting = mean;
+        None
+    }
+
+    /// Takes in `run` blocks of the same mean; the answer is the mean of the pair that the first one
+    /// completes, if it does, and how many pairs of equal ones there are besides.
+    #[inline]
+    fn take_run(&mut self, mean: f64, run: u64) -> (Option<f64>, u64) {
+        if run == 0 {
+            return (None, 0);
+        }
+        let waits = self.count % 2;
+        let completed = (waits == 1).then_some(0.5 * (self.waiting + mean));
+        self.count += run;
+        self.sum += run as f64 * mean;
+        self.squares += run as f64 * mean * mean;
+        if self.count % 2 == 1 {
+            self.waiting = mean;
+        }
+        (completed, (run - waits) / 2)
+    }
+
     fn mean(&self) -> f64 {
         self.sum / self.count as f64
     }
@@ -43,19 +74,20 @@ impl Default for Blocks {
 }
 
 impl Blocks {
-    /// Takes in the value of the next step.
+    /// Takes in the next `steps` steps, all of which have the same value.
     #[inline]
-    pub(super) fn push(&mut self, value: f64) {
-        let mut mean = value;
+    pub(super) fn push(&mut self, value: f64, steps: u64) {
+        // Each level takes a block that was merged with what waited below, if any, and then a run of
+        // equal blocks.
+        let (mut merged, mut run) = (None, steps);
         for level in &mut self.levels {
-            level.count += 1;
-            level.sum += mean;
-            level.squares += mean * mean;
-            if level.count % 2 == 1 {
-                level.waiting = mean;
+            if merged.is_none() && run == 0 {
                 return;
             }
-            mean = 0.5 * (level.waiting + mean);
+            let first = merged.take().and_then(|mean| level.take_one(mean));
+            let (next, pairs) = level.take_run(value, run);
+            merged = first.or(next);
+            run = pairs;
         }
     }
 
@@ -117,7 +149,7 @@ mod tests {
             let mut blocks = Blocks::default();
             let mut x = noise();
             for _ in 0..steps {
-                blocks.push(x);
+                blocks.push(x, 1);
                 x = rho * x + (1.0 - rho * rho).sqrt() * noise();
             }
             pooled.add(&blocks);
@@ -162,8 +194,7 @@ mod tests {
         let mut blocks = Blocks::default();
         for _ in 0..1 << 16 {
             let value = rng.uniform();
-            blocks.push(value);
-            blocks.push(value);
+            blocks.push(value, 2);
         }
         let r = blocks.correlations();
         assert_eq!(r.first(), Some(&1.0), "each pair is twice the same");
@@ -173,9 +204,29 @@ mod tests {
     }
 
     #[test]
+    fn a_stay_is_as_good_as_its_steps() {
+        let mut rng = Rng::new(6, Stream::Laboratory, 0);
+        let (mut stays, mut steps) = (Blocks::default(), Blocks::default());
+        for _ in 0..5000 {
+            // Multiples of 1/64, so that sums are exact in any order.
+            let value = (64.0 * rng.uniform()).floor() / 64.0;
+            let dwell = (40.0 * rng.uniform().powi(3)) as u64;
+            stays.push(value, dwell);
+            (0..dwell).for_each(|_| steps.push(value, 1));
+        }
+        assert!(steps.steps() > 10_000, "{} steps", steps.steps());
+        for (stay, step) in stays.levels.iter().zip(&steps.levels) {
+            assert_eq!(stay.count, step.count, "blocks of every length");
+            assert!((stay.sum - step.sum).abs() < 1e-6 * step.sum.abs().max(1.0), "their sums");
+            let tolerance = 1e-6 * step.squares.max(1.0);
+            assert!((stay.squares - step.squares).abs() < tolerance, "and squares");
+        }
+    }
+
+    #[test]
     fn what_does_not_vary_says_nothing() {
         let mut blocks = Blocks::default();
-        (0..10_000).for_each(|_| blocks.push(3.0));
+        blocks.push(3.0, 10_000);
         assert_eq!(blocks.correlation_steps(), None, "no variance");
         assert!(blocks.correlations().is_empty(), "no correlation");
         assert_eq!(Blocks::default().correlation_steps(), None, "no steps");

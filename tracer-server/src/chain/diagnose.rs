@@ -16,15 +16,17 @@ const LONGEST: usize = 8;
 pub(super) fn diagnose<'a, I: Iterator<Item = &'a Chain>>(chains: I) -> Option<Diagnostics> {
     let monitors: Vec<&Monitor> = chains.filter_map(Chain::monitor).collect();
     let grid = monitors.first()?.grid();
-    let mut blocks = Blocks::default();
-    for monitor in &monitors {
-        blocks.add(monitor.blocks());
-    }
-    if blocks.steps() == 0 {
+    let steps: u64 = monitors.iter().map(|monitor| monitor.settled()).sum();
+    if steps == 0 {
         return None;
     }
-    let moments: Vec<_> = monitors.iter().map(|m| m.blocks().moments()).collect();
-    let per_chain = blocks.steps() as f64 / monitors.len() as f64;
+    let heard: Vec<&Blocks> = monitors.iter().filter_map(|monitor| monitor.blocks()).collect();
+    let mut blocks = Blocks::default();
+    for chain in &heard {
+        blocks.add(chain);
+    }
+    let moments: Vec<_> = heard.iter().map(|chain| chain.moments()).collect();
+    let per_chain = blocks.steps() as f64 / heard.len() as f64;
     let correlation_steps = blocks.correlation_steps().unwrap_or(0.0);
     let known = correlation_steps > 0.0;
     Some(Diagnostics {
@@ -32,7 +34,7 @@ pub(super) fn diagnose<'a, I: Iterator<Item = &'a Chain>>(chains: I) -> Option<D
         maps: maps(grid, &monitors),
         autocorrelation: blocks.correlations(),
         correlation_steps,
-        effective_samples: if known { blocks.steps() as f64 / correlation_steps } else { 0.0 },
+        effective_samples: if known { steps as f64 / correlation_steps } else { 0.0 },
         r_hat: scale_reduction(&moments, per_chain).unwrap_or(0.0),
         longest: longest(&monitors),
     })
@@ -61,7 +63,7 @@ struct Tile {
 fn maps(grid: TileGrid, monitors: &[&Monitor]) -> TileMaps {
     let mut tiles = vec![Tile::default(); grid.len()];
     for monitor in monitors {
-        let steps = monitor.blocks().steps().max(1) as f64;
+        let steps = monitor.settled().max(1) as f64;
         for (tile, counts) in tiles.iter_mut().zip(monitor.tiles()) {
             let share = counts.steps as f64 / steps;
             tile.counts.steps += counts.steps;

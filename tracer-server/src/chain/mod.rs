@@ -133,14 +133,14 @@ impl Chain {
         self.mixture_total = mixture.total(&self.current);
         self.statistics = ChainStatistics::new(mixture.len());
         if let Some(monitor) = &mut self.monitor {
-            monitor.begin(&self.current);
+            monitor.begin(self.id, &self.current);
         }
     }
 
     /// Has every step from now on looked at, for [`Ensemble::diagnostics`]. The chain takes the same
     /// steps as without; `size` is that of the film.
     pub fn watch_every_step(&mut self, size: [u32; 2]) {
-        self.monitor = Some(Box::new(Monitor::new(size, &self.current)));
+        self.monitor = Some(Box::new(Monitor::new(self.id, size, &self.current)));
     }
 
     /// Who looks at every step.

@@ -4,12 +4,15 @@
 //! one that is not. Its tables are written when a state is left, not at every step, and it allocates
 //! nothing after it was made.
 
-use common::{PathHeader, TileGrid, VertexRecord};
+use common::{ChainId, PathHeader, TileGrid, VertexRecord};
+use glam::DVec2;
 
 use super::Chain;
 use super::blocks::Blocks;
 use crate::path::{MAX_VERTICES, Path};
 
+/// Chains whose memory is measured: the first ones, since so many know it as well as all.
+const REMEMBERED: u32 = 16;
 /// Most tiles that the film is divided into.
 const TILES: u32 = 1024;
 
@@ -39,8 +42,13 @@ pub(super) struct Monitor {
     grid: TileGrid,
     /// Width and height of the film in pixels.
     size: [u32; 2],
+    /// Width and height of the film in tiles.
+    tiles_a_side: DVec2,
     tiles: Vec<TileCounts>,
-    blocks: Blocks,
+    /// What the chain remembers, if that is measured.
+    blocks: Option<Box<Blocks>>,
+    /// Steps in the tables.
+    settled: u64,
     longest: LongestStay,
     /// Tile and log luminance of the current state.
     tile: usize,
@@ -52,16 +60,18 @@ pub(super) struct Monitor {
 }
 
 impl Monitor {
-    /// Begins to look at a chain in the state `current`, on a film of `size` pixels.
-    pub(super) fn new(size: [u32; 2], current: &Path) -> Self {
+    /// Begins to look at the chain `id` in the state `current`, on a film of `size` pixels.
+    pub(super) fn new(id: ChainId, size: [u32; 2], current: &Path) -> Self {
         let [width, height] = size;
         let grid = TileGrid::over(width, height, TILES);
         let vertices = Vec::with_capacity(MAX_VERTICES);
         let mut monitor = Self {
             grid,
             size,
+            tiles_a_side: DVec2::new(f64::from(width), f64::from(height)) / f64::from(grid.side),
             tiles: vec![TileCounts::default(); grid.len()],
-            blocks: Blocks::default(),
+            blocks: (id.0 < REMEMBERED).then(Box::default),
+            settled: 0,
             longest: LongestStay { header: PathHeader::default(), vertices },
             tile: 0,
             log_luminance: 0.0,
@@ -73,16 +83,20 @@ impl Monitor {
     }
 
     /// Forgets everything, and begins anew in the state `current`.
-    pub(super) fn begin(&mut self, current: &Path) {
-        *self = Self::new(self.size, current);
+    pub(super) fn begin(&mut self, id: ChainId, current: &Path) {
+        *self = Self::new(id, self.size, current);
     }
 
     /// The chain has come to `path`.
     #[inline]
     pub(super) fn arrive(&mut self, path: &Path) {
-        let (pixel, width) = (path.pixel() as u32, self.size[0]);
-        self.tile = self.grid.tile(pixel % width, pixel / width);
-        self.log_luminance = -path.density_sum().ln();
+        let place = path.film() * self.tiles_a_side;
+        let column = (place.x as usize).min(self.grid.columns as usize - 1);
+        let row = (place.y as usize).min(self.grid.rows as usize - 1);
+        self.tile = row * self.grid.columns as usize + column;
+        if self.blocks.is_some() {
+            self.log_luminance = -path.density_sum().ln();
+        }
         self.tiles[self.tile].visits += 1;
     }
 
@@ -90,7 +104,6 @@ impl Monitor {
     #[inline]
     pub(super) fn step(&mut self) {
         self.steps += 1;
-        self.blocks.push(self.log_luminance);
     }
 
     /// A proposal from the current state had this probability.
@@ -104,6 +117,10 @@ impl Monitor {
         let counts = &mut self.tiles[self.tile];
         counts.steps += self.steps;
         counts.acceptance += self.acceptance;
+        self.settled += self.steps;
+        if let Some(blocks) = &mut self.blocks {
+            blocks.push(self.log_luminance, self.steps);
+        }
         (self.steps, self.acceptance) = (0, 0.0);
         let dwell = u32::try_from(chain.stay()).unwrap_or(u32::MAX);
         if dwell > self.longest.header.dwell {
@@ -128,9 +145,14 @@ impl Monitor {
         &self.tiles
     }
 
-    /// What the chain remembers of its log luminance.
-    pub(super) fn blocks(&self) -> &Blocks {
-        &self.blocks
+    /// Steps in the tables.
+    pub(super) fn settled(&self) -> u64 {
+        self.settled
+    }
+
+    /// What the chain remembers of its log luminance, if that is measured.
+    pub(super) fn blocks(&self) -> Option<&Blocks> {
+        self.blocks.as_deref()
     }
 
     /// Where the chain stayed longest.

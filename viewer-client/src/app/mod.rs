@@ -6,10 +6,14 @@ use std::time::Instant;
 use egui_wgpu::RenderState;
 
 use crate::camera::{Bounds, ViewCamera};
-use crate::command::{CameraCommand, CloudCommand, Command, ImageCommand, PathCommand, VertexStep};
-use crate::connection::{Delivery, FocusNews, Link};
+use crate::command::{
+    CameraCommand, CloudCommand, Command, DeskCommand, ImageCommand, PathCommand, VertexStep,
+};
+use crate::connection::{Delivery, FocusNews, Link, Peer};
 use crate::darkroom::Darkroom;
+use crate::desk::{Connect, Desk};
 use crate::gpu::{Quality, Renderer, Uploaded};
+use crate::habits::Habits;
 use crate::history::History;
 use crate::keys;
 use crate::model::{Model, corners, drawing_aids};
@@ -17,6 +21,7 @@ use crate::panel::{self, NOTICE_TIME, Panel, Slot};
 use crate::pick::{self, Aim, Pickable};
 use crate::selection::Selection;
 use crate::settings::Settings;
+use crate::share;
 use crate::status::{LinkState, Status};
 use crate::store::{Drawn, PAGE_POINTS, Store};
 use crate::theme;
@@ -35,6 +40,7 @@ pub struct Viewer {
     status: Status,
     store: Store,
     darkroom: Darkroom,
+    desk: Desk,
     model: Option<Model>,
     /// Hash of the scene that is shown.
     scene_hash: String,
@@ -77,6 +83,7 @@ impl Viewer {
             camera: ViewCamera::default(),
             status,
             darkroom: Darkroom::default(),
+            desk: Desk::default(),
             model: None,
             scene_hash: String::new(),
             link: None,
@@ -115,6 +122,22 @@ impl Viewer {
         if !self.settings.filter.text.is_empty() {
             self.ask_for_paths();
         }
+    }
+
+    /// Takes over what the user is used to, and how to connect elsewhere. Who comes for the first time
+    /// sees the first steps.
+    pub fn adopt(&mut self, habits: Habits, connect: Connect) {
+        match &habits.layout {
+            Some(layout) => self.settings.layout.clone_from(layout),
+            None => self.settings.layout.hint = true,
+        }
+        self.desk.habits = habits;
+        self.desk.connect = Some(connect);
+    }
+
+    /// What the user is used to by now.
+    pub fn habits(&self) -> Habits {
+        Habits { layout: Some(self.settings.layout.clone()), ..self.desk.habits.clone() }
     }
 
     /// Follows the commands of a script. Those for the camera wait for the scene, which would
@@ -198,6 +221,9 @@ impl Viewer {
                 self.stale = Stale { surfaces: true, aids: true };
             }
             self.waiting.clear();
+            if !self.status.embedded {
+                self.desk.habits.note(&self.status.address);
+            }
             self.status.welcome(welcome);
         }
         if let Some(scene) = delivery.scene {
@@ -214,7 +240,13 @@ impl Viewer {
                 FocusNews::Gap(steps) => self.status.steering.focus.miss(steps),
             }
         }
+        let remarks = self.status.steering.remark_count;
         delivery.notices.into_iter().for_each(|notice| self.status.steering.take(notice));
+        if self.status.steering.remark_count != remarks
+            && let Some(remark) = self.status.steering.remarks.back().cloned()
+        {
+            self.status.say(Ok(remark));
+        }
         if let Some(reply) = delivery.filter {
             if let Some(error) = &reply.error {
                 self.status.say(Err(format!("The filter is refused: {error}")));
@@ -316,6 +348,7 @@ impl Viewer {
                 self.darkroom.apply(&command, &self.settings.image, &mut self.status);
             }
             Command::Layout(command) => self.settings.layout.apply(command),
+            Command::Desk(command) => self.go_beyond(command),
             Command::Order(order) => self.send(order),
             Command::Path(PathCommand::Pick(aim)) => self.pick(aim),
             Command::Path(PathCommand::Deselect) => self.selection = None,
@@ -330,6 +363,51 @@ impl Viewer {
             }
             Command::Quit => self.closing = true,
         }
+    }
+
+    fn go_beyond(&mut self, command: DeskCommand) {
+        match command {
+            DeskCommand::Connect(place) => {
+                if let Err(problem) = self.connect(&place) {
+                    self.status.say(Err(problem));
+                }
+            }
+            DeskCommand::Share => {
+                let link = share::link(&self.status.address, &self.camera, &self.settings);
+                self.status.say(Ok(format!("Copied {link}")));
+                self.desk.copy(link);
+            }
+            DeskCommand::Screenshot(file) if self.desk.connect.is_some() => {
+                self.desk.photograph(&file);
+            }
+            DeskCommand::Screenshot(_) => {
+                let remedy = "There is no window; use --headless --screenshot-to OUT.png.";
+                self.status.say(Err(remedy.to_owned()));
+            }
+        }
+    }
+
+    /// Leaves the daemon, and watches the one at HOST:PORT or where a link leads.
+    fn connect(&mut self, place: &str) -> Result<(), String> {
+        let (address, commands) = if place.starts_with(share::SCHEME) {
+            let shared = share::read(place).map_err(|error| error.to_string())?;
+            (shared.address, shared.commands)
+        } else {
+            (place.to_owned(), Vec::new())
+        };
+        let connect = self.desk.connect.as_ref().ok_or("There is no window to connect for.")?;
+        let link = connect(Peer::open(address.clone()))
+            .map_err(|error| format!("Cannot connect to {address}: {error}"))?;
+        self.link = None;
+        self.status = Status::new(address, false);
+        self.scene_hash.clear();
+        self.store.clear();
+        self.darkroom.film.clear();
+        self.model = None;
+        self.stale = Stale { surfaces: true, aids: true };
+        self.set_link(link);
+        self.run_script(commands);
+        Ok(())
     }
 
     /// Tells the daemon which paths to send from now on; those before were others.
@@ -398,6 +476,8 @@ impl Viewer {
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         let theme = if self.settings.layout.dark { egui::Theme::Dark } else { egui::Theme::Light };
         ui.ctx().set_theme(theme);
+        ui.ctx().set_zoom_factor(f32::from(self.settings.layout.scale) / 100.0);
+        self.desk.work(ui.ctx(), &mut self.darkroom, &mut self.status);
         let was_through = self.camera.is_through();
         let mut commands = Vec::new();
         let world = World {
@@ -410,6 +490,7 @@ impl Viewer {
             selection: self.selection.as_ref(),
             moment: self.status.steering.focus.moment(self.scrub),
             scrub: self.scrub,
+            recent: &self.desk.habits.recent,
             model: self.model.as_ref(),
             now: Instant::now(),
         };

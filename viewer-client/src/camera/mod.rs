@@ -9,7 +9,7 @@ pub use lens::{Bounds, Gate, Lens, NEAR};
 use common::Camera;
 use glam::Vec3;
 
-use crate::command::{CameraCommand, Side};
+use crate::command::{CameraCommand, Place, Side};
 
 /// Half the vertical field of view of the user's eye, as a tangent: 45 degrees in all.
 const TAN_Y: f32 = 0.414_213_56;
@@ -104,8 +104,19 @@ impl ViewCamera {
                 self.through = false;
                 self.frame();
             }
+            CameraCommand::Place(place) => {
+                self.through = false;
+                self.pivot = Vec3::from(place.pivot);
+                (self.distance, self.yaw, self.pitch) = (place.distance, place.yaw, place.pitch);
+            }
             CameraCommand::View(side) => self.view(side),
         }
+    }
+
+    /// Where the eye is when it does not look through the render camera.
+    pub fn place(&self) -> Place {
+        let &Self { pivot, distance, yaw, pitch, .. } = self;
+        Place { pivot: pivot.to_array(), distance, yaw, pitch }
     }
 
     /// Takes a new scene, and starts behind the render camera's shoulder.

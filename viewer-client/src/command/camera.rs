@@ -31,6 +31,8 @@ pub enum CameraCommand {
     Focus([f32; 3], f32),
     /// Shows the whole scene.
     Frame,
+    /// Stands where a link says.
+    Place(Place),
     /// Shows the whole scene from one side.
     View(Side),
 }
@@ -71,6 +73,19 @@ impl fmt::Display for Side {
     }
 }
 
+/// Where the eye is: what it turns round, from how far, and from where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// What the view turns round, in scene units.
+    pub pivot: [f32; 3],
+    /// From the eye to the pivot.
+    pub distance: f32,
+    /// Degrees to the left of the front, seen from above.
+    pub yaw: f32,
+    /// Degrees above the horizon.
+    pub pitch: f32,
+}
+
 pub(super) const FORMS: &[Form] = &[
     ("camera orbit RIGHT UP", "turn round the pivot, in degrees"),
     ("camera pan RIGHT UP", "shift the picture, in heights of the viewport"),
@@ -81,6 +96,7 @@ pub(super) const FORMS: &[Form] = &[
     ("camera through on|off|toggle", "look through the render camera"),
     ("camera focus X Y Z DISTANCE", "turn round a point, in scene units, from no farther away"),
     ("camera frame", "show the whole scene"),
+    ("camera place X Y Z DISTANCE YAW PITCH", "stand where a link says, in scene units"),
     ("camera view front|back|left|right|top|bottom", "show the scene from one side"),
 ];
 
@@ -96,6 +112,9 @@ impl fmt::Display for CameraCommand {
             Self::Through(switch) => write!(f, "through {switch}"),
             Self::Focus([x, y, z], d) => write!(f, "focus {x} {y} {z} {d}"),
             Self::Frame => write!(f, "frame"),
+            Self::Place(Place { pivot: [x, y, z], distance, yaw, pitch }) => {
+                write!(f, "place {x} {y} {z} {distance} {yaw} {pitch}")
+            }
             Self::View(side) => write!(f, "view {side}"),
         }
     }
@@ -126,6 +145,15 @@ pub(super) fn parse(words: &mut Words<'_>) -> Result<CameraCommand, CommandError
             words.number("DISTANCE", 0.01..=1e6)?,
         ),
         "frame" => CameraCommand::Frame,
+        "place" => {
+            const FAR: std::ops::RangeInclusive<f32> = -1e7..=1e7;
+            CameraCommand::Place(Place {
+                pivot: [words.number("X", FAR)?, words.number("Y", FAR)?, words.number("Z", FAR)?],
+                distance: words.number("DISTANCE", 1e-4..=1e7)?,
+                yaw: words.number("YAW", -360.0..=360.0)?,
+                pitch: words.number("PITCH", -90.0..=90.0)?,
+            })
+        }
         "view" => CameraCommand::View(words.choice("SIDE", &Side::ALL)?),
         other => return Err(CommandError::Unknown(format!("camera {other}"))),
     })

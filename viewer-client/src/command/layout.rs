@@ -1,9 +1,10 @@
-//! `panel`, `theme`, `help`: what the window holds.
+//! `panel`, `theme`, `help`, `hint`, `scale`: what the window holds, and how large.
 
 use std::fmt;
 
 use super::Form;
 use super::words::{CommandError, Switch, Words};
+use crate::settings::SCALES;
 
 /// What may be done to the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,6 +15,10 @@ pub enum LayoutCommand {
     Theme(ThemeName),
     /// Opens or closes the sheet of keys.
     Help(Switch),
+    /// Shows or hides the first steps.
+    Hint(Switch),
+    /// Size of texts and buttons in percent.
+    Scale(u16),
 }
 
 /// A panel that can be closed.
@@ -108,6 +113,8 @@ pub(super) const FORMS: &[Form] = &[
     ),
     ("theme dark|light|toggle", "colours of the interface"),
     ("help on|off|toggle", "the sheet of keys"),
+    ("hint on|off|toggle", "the first steps"),
+    ("scale PERCENT", "size of texts and buttons (50 to 300)"),
 ];
 
 impl fmt::Display for LayoutCommand {
@@ -116,6 +123,8 @@ impl fmt::Display for LayoutCommand {
             Self::Panel(name, switch) => write!(f, "panel {name} {switch}"),
             Self::Theme(theme) => write!(f, "theme {theme}"),
             Self::Help(switch) => write!(f, "help {switch}"),
+            Self::Hint(switch) => write!(f, "hint {switch}"),
+            Self::Scale(percent) => write!(f, "scale {percent}"),
         }
     }
 }
@@ -125,6 +134,8 @@ pub(super) fn parse(word: &str, words: &mut Words<'_>) -> Result<LayoutCommand, 
         "panel" => LayoutCommand::Panel(words.choice("NAME", &PanelName::ALL)?, words.switch()?),
         "theme" => LayoutCommand::Theme(words.choice("NAME", &ThemeName::ALL)?),
         "help" => LayoutCommand::Help(words.switch()?),
+        "hint" => LayoutCommand::Hint(words.switch()?),
+        "scale" => LayoutCommand::Scale(words.within("PERCENT", SCALES)?),
         other => return Err(CommandError::Unknown(other.to_owned())),
     })
 }

@@ -6,6 +6,7 @@
 
 mod camera;
 mod cloud;
+mod desk;
 mod filter;
 mod image;
 mod layout;
@@ -14,8 +15,9 @@ mod scene;
 mod steer;
 mod words;
 
-pub use camera::{CameraCommand, Side};
+pub use camera::{CameraCommand, Place, Side};
 pub use cloud::{CloudCommand, ColorMode, ColorScale, Marks};
+pub use desk::DeskCommand;
 pub use filter::FilterCommand;
 pub use image::{ImageCommand, Layer, ToneCurve};
 pub use layout::{LayoutCommand, PanelName, ThemeName};
@@ -44,6 +46,8 @@ pub enum Command {
     Image(ImageCommand),
     /// Concerns the window's panels.
     Layout(LayoutCommand),
+    /// Goes beyond the window.
+    Desk(DeskCommand),
     /// Steers explorer and chains, or concerns who may.
     Order(Order),
     /// Concerns the path that is looked at.
@@ -74,7 +78,7 @@ const OWN_FORMS: [Form; 4] = [
 pub fn forms() -> impl Iterator<Item = Form> {
     [camera::FORMS, cloud::FORMS, scene::FORMS, filter::FORMS, image::FORMS]
         .into_iter()
-        .chain([layout::FORMS, path::FORMS, steer::FORMS, &OWN_FORMS])
+        .chain([layout::FORMS, path::FORMS, desk::FORMS, steer::FORMS, &OWN_FORMS])
         .flatten()
         .copied()
 }
@@ -88,6 +92,7 @@ impl fmt::Display for Command {
             Self::Filter(command) => write!(f, "filter {command}"),
             Self::Image(command) => write!(f, "image {command}"),
             Self::Layout(command) => write!(f, "{command}"),
+            Self::Desk(command) => write!(f, "{command}"),
             Self::Order(order) => write!(f, "{}", steer::Text(*order)),
             Self::Path(command) => write!(f, "path {command}"),
             Self::Scrub(Some(number)) => write!(f, "explorer show {number}"),
@@ -114,6 +119,9 @@ impl FromStr for Command {
             "explorer" if words.peek() == Some("show") => {
                 Self::Scrub(steer::parse_show(&mut words)?)
             }
+            verb @ ("connect" | "share" | "screenshot") => {
+                Self::Desk(desk::parse(verb, &mut words)?)
+            }
             group @ ("explorer" | "chains" | "lease") => {
                 Self::Order(steer::parse(group, &mut words)?)
             }
@@ -136,7 +144,7 @@ mod tests {
     /// One example of every form, in the order of [`forms`].
     const EXAMPLES: &str = "camera orbit 12.5 -3\ncamera pan 0.1 -0.25\ncamera zoom 1.5 0.25 -0.5\n\
         camera look 3 4\ncamera move 0.1 0 -0.2\ncamera fly toggle\ncamera through on\n\
-        camera focus 1 2 -3 40\ncamera frame\ncamera view front\n\
+        camera focus 1 2 -3 40\ncamera frame\ncamera place 1 2 -3 40 -12.5 8\ncamera view front\n\
         cloud freeze toggle\ncloud clear\ncloud width 2.5\ncloud opacity 0.5\ncloud hidden 0.1\n\
         cloud fade 500\ncloud shown 2000\ncloud budget 64\ncloud color strategy\ncloud ends off\n\
         cloud dots 1.5\ncloud marks ends\ncloud scale log\ncloud cue 0.5\ncloud dim 0.25\n\
@@ -146,8 +154,9 @@ mod tests {
         image exposure -1.5\nimage auto\nimage zoom 2\nimage look 0.25 0.75\nimage fit\n\
         image show difference\nimage tone gamma\nimage gamma 1.8\nimage reference a b.exr\n\
         image forget\nimage save out.png\nimage tev 127.0.0.1:14158\n\
-        panel statistics off\ntheme light\nhelp toggle\n\
+        panel statistics off\ntheme light\nhelp toggle\nhint off\nscale 125\n\
         path pick 0.1 -0.2 0.01\npath none\npath vertex 3\n\
+        connect 127.0.0.1:50061\nshare\nscreenshot a b.png\n\
         explorer seed 3.0.1024\nexplorer play 2.5\nexplorer pause\nexplorer step 10\n\
         explorer skip accepted\nexplorer allow 0,2,5\nexplorer fan 2 100\nexplorer show live\n\
         chains pause\nchains resume\nchains weight 1 0.25\nchains precision 0.001\n\
@@ -204,6 +213,7 @@ mod tests {
         assert!(complaint("scene grid maybe").contains("on, off, toggle"), "lists the choices");
         assert!(complaint("filter set edges >").contains("cannot be read"), "says what is wrong");
         assert!(complaint("image save").contains("FILE is missing"), "names the parameter");
+        assert!(complaint("scale 1000").contains("between 50 and 300"), "names the limits");
         assert!(complaint("quit now").contains("`now` is too much"), "names the rest");
     }
 }

@@ -159,7 +159,8 @@ impl Stage {
     pub fn frame(&mut self, viewer: &mut Viewer) -> anyhow::Result<FrameCost> {
         let started = Instant::now();
         while viewer.upload(&self.gpu) {}
-        let screen = egui::vec2(self.size[0] as f32, self.size[1] as f32);
+        let pixels = egui::vec2(self.size[0] as f32, self.size[1] as f32);
+        let screen = pixels / self.ctx.zoom_factor();
         let input = egui::RawInput {
             screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, screen)),
             time: Some(self.time),
@@ -169,7 +170,8 @@ impl Stage {
         self.time += 0.5;
         let mut output = self.ctx.run_ui(input, |ui| viewer.ui(ui));
         let primitives = self.ctx.tessellate(output.shapes, output.pixels_per_point);
-        let commands = self.encode(&primitives, &mut output.textures_delta);
+        let commands =
+            self.encode(&primitives, &mut output.textures_delta, output.pixels_per_point);
         let cpu = started.elapsed();
         self.gpu.queue.submit(commands);
         let done = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
@@ -183,6 +185,7 @@ impl Stage {
         &self,
         primitives: &[egui::ClippedPrimitive],
         textures: &mut egui::TexturesDelta,
+        pixels_per_point: f32,
     ) -> Vec<wgpu::CommandBuffer> {
         let RenderState { device, queue, .. } = &self.gpu;
         let mut renderer = self.gpu.renderer.write();
@@ -194,7 +197,7 @@ impl Stage {
         }
         let mut encoder =
             device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
-        let screen = ScreenDescriptor { size_in_pixels: self.size, pixels_per_point: 1.0 };
+        let screen = ScreenDescriptor { size_in_pixels: self.size, pixels_per_point };
         let more = renderer.update_buffers(device, queue, &mut encoder, primitives, &screen);
         let view = self.target.create_view(&wgpu::TextureViewDescriptor::default());
         let mut pass = encoder

@@ -1,16 +1,20 @@
 //! The bar at the head: menus, and what is being looked at.
 
-use egui::{Align, Button, Label, Layout, MenuBar, RichText, Ui};
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{Align, Button, Label, Layout, MenuBar, PopupCloseBehavior, RichText, Ui};
 
 use super::Panel;
+use super::connect::ConnectMenu;
 use crate::command::{Command, LayoutCommand, PanelName, Switch, ThemeName};
 use crate::keys::{BINDINGS, Binding, Group, key_name};
 use crate::theme;
 use crate::world::World;
 
 /// Menus.
-#[derive(Debug)]
-pub(super) struct Menu;
+#[derive(Debug, Default)]
+pub(super) struct Menu {
+    connection: ConnectMenu,
+}
 
 impl Panel for Menu {
     fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
@@ -18,6 +22,10 @@ impl Panel for Menu {
             let name = RichText::new("Lvis").strong().size(16.0).color(theme::ACCENT);
             ui.add(Label::new(name).selectable(false));
             ui.add_space(8.0);
+            let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+            MenuButton::new("Connection")
+                .config(config)
+                .ui(ui, |ui| self.connection.show(ui, world, commands));
             ui.menu_button("Camera", |ui| group(ui, world, Group::Camera, commands));
             ui.menu_button("Paths", |ui| group(ui, world, Group::Paths, commands));
             ui.menu_button("View", |ui| {

@@ -4,9 +4,11 @@
 //! [`PanelName`] where the user may close it.
 
 mod cloud;
+mod connect;
 mod diagnostics;
 mod explorer;
 mod help;
+mod hint;
 mod image;
 mod menu;
 mod notice;
@@ -54,7 +56,7 @@ pub enum Slot {
 /// Every panel, in the order in which they are laid out.
 pub fn all() -> Vec<(Slot, Box<dyn Panel>)> {
     vec![
-        (Slot::Top, Box::new(menu::Menu)),
+        (Slot::Top, Box::new(menu::Menu::default())),
         (Slot::Bottom, Box::new(status::StatusBar)),
         (Slot::Left(PanelName::Cloud), Box::new(cloud::Cloud)),
         (Slot::Left(PanelName::Scene), Box::new(scene::Scene)),
@@ -64,6 +66,7 @@ pub fn all() -> Vec<(Slot, Box<dyn Panel>)> {
         (Slot::Right(PanelName::Statistics), Box::new(statistics::StatisticsPanel)),
         (Slot::Right(PanelName::Diagnostics), Box::new(diagnostics::DiagnosticsPanel)),
         (Slot::Centre, Box::new(viewport::Viewport)),
+        (Slot::Overlay, Box::new(hint::Hint)),
         (Slot::Overlay, Box::new(notice::NoticePanel)),
         (Slot::Overlay, Box::new(help::Help)),
     ]

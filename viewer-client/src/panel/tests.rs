@@ -30,6 +30,8 @@ pub(super) struct Stage {
     pub(super) film: Film,
     pub(super) reference: Option<Reference>,
     pub(super) selection: Option<Selection>,
+    pub(super) recent: Vec<String>,
+    pub(super) model: Option<crate::model::Model>,
     pub(super) panel: Box<dyn Panel>,
     pub(super) said: Vec<Command>,
 }
@@ -44,6 +46,8 @@ impl Stage {
             film: Film::default(),
             reference: None,
             selection: None,
+            recent: Vec::new(),
+            model: None,
             panel: Box::new(panel),
             said: Vec::new(),
         }
@@ -62,7 +66,8 @@ impl Stage {
                     selection: stage.selection.as_ref(),
                     moment: stage.status.steering.focus.moment(None),
                     scrub: None,
-                    model: None,
+                    recent: &stage.recent,
+                    model: stage.model.as_ref(),
                     now: Instant::now(),
                 };
                 stage.panel.ui(ui, &world, &mut stage.said);
@@ -382,7 +387,8 @@ fn long_numbers_do_not_widen_their_panel() {
                 selection: stage.selection.as_ref(),
                 moment: stage.status.steering.focus.moment(None),
                 scrub: None,
-                model: None,
+                recent: &stage.recent,
+                model: stage.model.as_ref(),
                 now: Instant::now(),
             };
             let panel = &mut stage.panel;
@@ -416,7 +422,7 @@ fn the_scene_panel_speaks_in_commands() {
 
 #[test]
 fn menus_hold_every_key() {
-    let mut stage = Stage::new(menu::Menu);
+    let mut stage = Stage::new(menu::Menu::default());
     stage.status.welcome(welcome());
     let mut harness = stage.harness();
     harness.run();
@@ -432,6 +438,40 @@ fn menus_hold_every_key() {
         Command::Cloud(CloudCommand::Clear),
     ];
     assert_eq!(harness.state().said, expected, "a button and a menu");
+}
+
+#[test]
+fn the_connection_menu_leads_back_and_passes_on() {
+    let mut stage = Stage::new(menu::Menu::default());
+    stage.recent = vec!["render-box:50061".to_owned(), "127.0.0.1:50061".to_owned()];
+    let mut harness = stage.harness();
+    harness.run();
+    for label in ["render-box:50061", "Copy link to this view", "Screenshot"] {
+        harness.get_by_label("Connection").click();
+        harness.run();
+        harness.get_by_label(label).click();
+        harness.run();
+    }
+    let expected = ["connect render-box:50061", "share", "screenshot lvis.png"];
+    let said: Vec<String> = harness.state().said.iter().map(ToString::to_string).collect();
+    assert_eq!(said, expected, "three entries");
+}
+
+#[test]
+fn the_first_steps_go_when_they_are_known() {
+    let mut stage = Stage::new(hint::Hint);
+    let mut harness = stage.harness();
+    harness.run();
+    assert!(!shows(&harness, "Got it"), "not for those who know");
+    stage = Stage::new(hint::Hint);
+    stage.settings.layout.hint = true;
+    stage.model = crate::model::Model::new(crate::synthetic::mesh());
+    let mut harness = stage.harness();
+    harness.run();
+    harness.get_by_label("Got it").click();
+    harness.run();
+    let expected = [Command::Layout(LayoutCommand::Hint(Switch::Off))];
+    assert_eq!(harness.state().said, expected, "one click");
 }
 
 #[test]

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use common::{Statistics, StrategyStatistics};
-use egui::{Color32, Label, Rect, Response, RichText, Sense, Ui, pos2, vec2};
+use egui::{
+    Color32, Label, Rect, Response, RichText, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2,
+};
 
-use super::strategy_color;
 use crate::format;
 use crate::panel::widgets::dot;
 use crate::theme;
@@ -41,7 +42,7 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, statistics: &Statistics) {
                 egui::Layout::left_to_right(egui::Align::Center),
                 |ui| {
                     ui.set_min_width(NAMES);
-                    dot(ui, strategy_color(index));
+                    dot(ui, theme::strategy_color(index));
                     let name = RichText::new(world.strategy_name(index)).small();
                     ui.add(Label::new(name).selectable(false).truncate());
                 },
@@ -50,7 +51,7 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, statistics: &Statistics) {
         });
     }
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.spacing_mut().item_spacing.x = 2.0;
         entry(ui, "accepted: bright", ui.visuals().text_color());
         entry(ui, "rejected: dim", ui.visuals().weak_text_color().gamma_multiply(0.5));
         for reason in failures.into_keys() {
@@ -59,14 +60,20 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, statistics: &Statistics) {
     });
 }
 
+/// A dot and its meaning, never apart.
 fn entry(ui: &mut Ui, text: &str, color: Color32) {
-    dot(ui, color);
-    ui.add(Label::new(RichText::new(text).small()).selectable(false));
-    ui.add_space(4.0);
+    let font = TextStyle::Small.resolve(ui.style());
+    let ink = ui.visuals().text_color();
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, ink);
+    let size = galley.size() + vec2(20.0, 2.0);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, text));
+    ui.painter().circle_filled(rect.left_center() + vec2(4.5, 0.0), 4.0, color);
+    ui.painter().galley(rect.min + vec2(12.0, 1.0), galley, ink);
 }
 
 fn parts(ui: &Ui, world: &World<'_>, index: usize, strategy: &StrategyStatistics) -> Vec<Part> {
-    let color = strategy_color(index);
+    let color = theme::strategy_color(index);
     let dim = color.lerp_to_gamma(ui.visuals().extreme_bg_color, 0.68);
     let rejected = strategy.generated.saturating_sub(strategy.accepted);
     let part = |label: &str, count, color| Part { label: label.to_owned(), count, color };

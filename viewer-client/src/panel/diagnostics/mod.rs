@@ -5,10 +5,11 @@ mod plots;
 mod stays;
 
 use common::{Diagnostics, Statistics};
-use egui::{Color32, Label, RichText, Ui};
+use egui::{Label, RichText, Ui};
 
 use super::Panel;
-use super::widgets::{capitalised, dot, empty_state, reading};
+use super::image::layer_button;
+use super::widgets::{dot, empty_state, reading};
 use crate::command::{Command, FilterCommand, ImageCommand, Layer};
 use crate::format;
 use crate::region::{self, Region};
@@ -38,6 +39,8 @@ impl Panel for DiagnosticsPanel {
             Some(diagnostics) => {
                 verdict(ui, world, diagnostics, commands);
                 samples(ui, statistics, diagnostics);
+                caption(ui, "On the image");
+                maps(ui, world, commands);
             }
             None => empty_state(
                 ui,
@@ -54,8 +57,6 @@ impl Panel for DiagnosticsPanel {
         plots::memory(ui, diagnostics);
         caption(ui, "Longest stays");
         stays::show(ui, world, diagnostics, commands);
-        caption(ui, "On the image");
-        maps(ui, world, commands);
     }
 }
 
@@ -158,23 +159,11 @@ fn samples(ui: &mut Ui, statistics: &Statistics, diagnostics: &Diagnostics) {
 /// The maps of the image panel.
 fn maps(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
         for layer in Layer::ALL.into_iter().filter(|layer| layer.is_map()) {
-            let chosen = world.settings.image.layer == layer;
-            let label = capitalised(&layer.to_string());
-            let button =
-                ui.selectable_label(chosen, label).on_hover_text(super::image::meaning(layer));
-            if button.clicked() {
-                let layer = if chosen { Layer::Image } else { layer };
-                commands.push(Command::Image(ImageCommand::Show(layer)));
-            }
+            layer_button(ui, world, layer, commands);
         }
     });
-}
-
-/// The colour of what a strategy's line or bar says, apart also without colours: every second group of
-/// strategies is dashed in the plot.
-fn strategy_color(index: usize) -> Color32 {
-    theme::strategy_color(index)
 }
 
 #[cfg(test)]

@@ -1,10 +1,9 @@
 //! Curves: acceptance over time, and correlation against the number of steps.
 
 use common::Diagnostics;
-use egui::{Color32, Ui};
+use egui::Ui;
 use egui_plot::{GridMark, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, Points};
 
-use super::strategy_color;
 use crate::format;
 use crate::theme;
 use crate::world::World;
@@ -27,6 +26,23 @@ fn plot<'a>(name: &'static str) -> Plot<'a> {
         .show_background(false)
         .set_margin_fraction(egui::vec2(0.02, 0.06))
         .y_axis_min_width(30.0)
+}
+
+/// Marks at 0, a half and 1.
+fn halves(_: egui_plot::GridInput) -> Vec<GridMark> {
+    [0.0, 0.5, 1.0].map(|value| GridMark { value, step_size: 0.5 }).to_vec()
+}
+
+/// Three to six marks at round numbers of seconds.
+fn moments((low, high): (f64, f64)) -> Vec<GridMark> {
+    let step = [1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0]
+        .into_iter()
+        .find(|step| (high - low) / step <= 5.0)
+        .unwrap_or(7200.0);
+    let first = (low / step).ceil().max(0.0) as i64;
+    let last = (high / step).floor() as i64;
+    let mark = |i: i64| GridMark { value: i as f64 * step, step_size: step };
+    (first..=last.min(first + 10)).map(mark).collect()
 }
 
 fn percent(mark: GridMark, _: &std::ops::RangeInclusive<f64>) -> String {
@@ -56,6 +72,9 @@ pub(super) fn acceptance(ui: &mut Ui, world: &World<'_>) {
     };
     plot("acceptance")
         .include_y(0.0)
+        .include_y(1.0)
+        .y_grid_spacer(halves)
+        .x_grid_spacer(|input| moments(input.bounds))
         .y_axis_formatter(percent)
         .x_axis_formatter(|mark, _| format::duration(mark.value))
         .label_formatter(label)
@@ -64,7 +83,7 @@ pub(super) fn acceptance(ui: &mut Ui, world: &World<'_>) {
                 let style =
                     if index < SOLID { LineStyle::Solid } else { LineStyle::dashed_loose() };
                 let line = Line::new(name, PlotPoints::from(points));
-                plot.line(line.color(strategy_color(index)).width(1.6).style(style));
+                plot.line(line.color(theme::strategy_color(index)).width(1.6).style(style));
             }
         });
 }
@@ -92,6 +111,8 @@ pub(super) fn memory(ui: &mut Ui, diagnostics: &Diagnostics) {
     plot("memory")
         .include_y(0.0)
         .include_y(1.0)
+        .y_grid_spacer(halves)
+        .y_axis_formatter(|mark, _| format!("{:.1}", mark.value))
         .x_grid_spacer(|input| {
             let (low, high) = input.bounds;
             let first = (low.ceil() as i32).max(0);
@@ -105,10 +126,6 @@ pub(super) fn memory(ui: &mut Ui, diagnostics: &Diagnostics) {
             let line = Line::new("memory", PlotPoints::from(points));
             plot.line(line.color(theme::ACCENT).width(1.6));
             let dots = Points::new("memory", PlotPoints::from(dots));
-            plot.points(dots.color(solid(theme::ACCENT)).radius(2.4));
+            plot.points(dots.color(theme::ACCENT).radius(2.4));
         });
-}
-
-fn solid(color: Color32) -> Color32 {
-    Color32::from_rgb(color.r(), color.g(), color.b())
 }

@@ -127,30 +127,49 @@ fn region_line(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
 }
 
 fn layers(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    let (maps, pictures): (Vec<Layer>, Vec<Layer>) =
+        Layer::ALL.into_iter().partition(|layer| layer.is_map());
     ui.horizontal_wrapped(|ui| {
-        for layer in Layer::ALL {
-            let missing = (layer.compares() && world.reference.is_none())
-                || (layer.is_map() && world.diagnostics().is_none());
-            let label = capitalised(&layer.to_string());
-            let chosen = world.settings.image.layer == layer;
-            // A row of its own for each would not wrap.
-            let button = ui
-                .add_enabled(!missing, Button::selectable(chosen, label))
-                .on_hover_text(meaning(layer))
-                .on_disabled_hover_text(if layer.is_map() {
-                    "The daemon has not told yet how the chains do"
-                } else {
-                    "Load a reference first: see Compare below"
-                });
-            if button.clicked() {
-                commands.push(Command::Image(ImageCommand::Show(layer)));
-            }
+        ui.spacing_mut().item_spacing.x = 2.0;
+        for layer in pictures {
+            layer_button(ui, world, layer, commands);
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        for layer in maps {
+            layer_button(ui, world, layer, commands);
         }
     });
 }
 
+/// A button that shows a layer.
+pub(super) fn layer_button(
+    ui: &mut Ui,
+    world: &World<'_>,
+    layer: Layer,
+    commands: &mut Vec<Command>,
+) {
+    let missing = (layer.compares() && world.reference.is_none())
+        || (layer.is_map() && world.diagnostics().is_none());
+    let remedy = if layer.is_map() {
+        "The daemon has not told yet how the chains do"
+    } else {
+        "Load a reference first: see Compare below"
+    };
+    let chosen = world.settings.image.layer == layer;
+    let button = Button::selectable(chosen, capitalised(&layer.to_string()));
+    let button = ui
+        .add_enabled(!missing, button)
+        .on_hover_text(meaning(layer))
+        .on_disabled_hover_text(remedy);
+    if button.clicked() {
+        commands.push(Command::Image(ImageCommand::Show(layer)));
+    }
+}
+
 /// What a layer shows.
-pub(super) fn meaning(layer: Layer) -> &'static str {
+fn meaning(layer: Layer) -> &'static str {
     match layer {
         Layer::Image => "The progressive image",
         Layer::Reference => "The image to compare with",

@@ -1,0 +1,64 @@
+//! The menu of connections: where to, where one was, and what to pass on.
+
+use egui::{Button, RichText, TextEdit, Ui};
+
+use crate::command::{Command, DeskCommand};
+use crate::world::World;
+
+/// What the user has typed.
+#[derive(Debug)]
+pub(super) struct ConnectMenu {
+    address: String,
+    screenshot: String,
+}
+
+impl Default for ConnectMenu {
+    fn default() -> Self {
+        Self { address: String::new(), screenshot: "lvis.png".to_owned() }
+    }
+}
+
+impl ConnectMenu {
+    pub(super) fn show(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+        ui.set_min_width(250.0);
+        let hint = "HOST:PORT, or a link";
+        if let Some(address) = line(ui, &mut self.address, hint, "Connect") {
+            commands.push(Command::Desk(DeskCommand::Connect(address)));
+            ui.close();
+        }
+        if !world.recent.is_empty() {
+            ui.label(RichText::new("Recent").small().weak());
+        }
+        for address in world.recent {
+            let here = world.status.is_connected() && *address == world.status.address;
+            if ui.add_enabled(!here, Button::new(address)).clicked() {
+                commands.push(Command::Desk(DeskCommand::Connect(address.clone())));
+                ui.close();
+            }
+        }
+        ui.separator();
+        let link = ui
+            .button("Copy link to this view")
+            .on_hover_text("Restores camera, filter and colours: viewer-client LINK");
+        if link.clicked() {
+            commands.push(Command::Desk(DeskCommand::Share));
+            ui.close();
+        }
+        if let Some(file) = line(ui, &mut self.screenshot, "file.png", "Screenshot") {
+            commands.push(Command::Desk(DeskCommand::Screenshot(file)));
+            ui.close();
+        }
+    }
+}
+
+/// A text and a button; the text when the button was clicked.
+fn line(ui: &mut Ui, text: &mut String, hint: &str, button: &str) -> Option<String> {
+    ui.horizontal(|ui| {
+        let edit = ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(140.0));
+        let entered = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+        let full = !text.trim().is_empty();
+        let clicked = ui.add_enabled(full, Button::new(button)).clicked();
+        (full && (clicked || entered)).then(|| text.trim().to_owned())
+    })
+    .inner
+}
