@@ -41,7 +41,7 @@ const BRIGHTEST: f32 = 10.0;
 /// The relative squared errors at the ends of their ramp.
 const ERRORS: [f32; 2] = [1e-4, 10.0];
 /// Mean stays at the ends of their ramp, in steps.
-const DWELLS: [f32; 2] = [1.0, 1000.0];
+const DWELLS: [f32; 2] = [1.0, 100.0];
 /// Arrivals over the mean at the ends of their ramp.
 const VISITS: [f32; 2] = [0.01, 100.0];
 /// Relative standard errors at the ends of their ramp.

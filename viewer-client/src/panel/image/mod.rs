@@ -158,7 +158,11 @@ pub(super) fn layer_button(
         "Load a reference first: see Compare below"
     };
     let chosen = world.settings.image.layer == layer;
-    let button = Button::selectable(chosen, capitalised(&layer.to_string()));
+    let label = match layer {
+        Layer::Disagreement => "R-hat".to_owned(),
+        other => capitalised(&other.to_string()),
+    };
+    let button = Button::selectable(chosen, label);
     let button = ui
         .add_enabled(!missing, button)
         .on_hover_text(meaning(layer))

@@ -1,0 +1,114 @@
+#!/usr/bin/env bash
+# Draws the pictures of docs/GUIDE.md anew, without a display: docs/guide.sh
+# Needs ImageMagick, and the viewer: set VIEWER to its program, or it is built.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+readonly FOLDER=docs/guide
+readonly LARGEST=150000
+
+if ! command -v convert >/dev/null; then
+  echo "ImageMagick is missing; on Debian: apt-get install imagemagick" >&2
+  exit 2
+fi
+if [[ -z ${VIEWER:-} ]]; then
+  cargo build --release --locked -p viewer-client
+  VIEWER=${CARGO_TARGET_DIR:-target}/release/viewer-client
+fi
+VIEWER=$(realpath "$VIEWER")
+mkdir -p "$FOLDER"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# The viewer without a window, in a folder of its own.
+look() {
+  (cd "$work" && "$VIEWER" --headless --screenshot-to shot.png "$@" 2>log) \
+    || { cat "$work/log" >&2; return 1; }
+}
+
+# shot NAME SCENE SIZE CROP SECONDS, with the commands on standard input. CROP is a geometry of
+# ImageMagick, or `all`.
+shot() {
+  local name=$1 scene=$2 size=$3 crop=$4 seconds=$5
+  cat >"$work/script"
+  look --scene "$scene" --size "$size" --wait "$seconds" --run script
+  local cut=()
+  [[ $crop == all ]] || cut=(-crop "$crop" +repage)
+  local colors
+  for colors in 192 96 48 24; do
+    convert "$work/shot.png" "${cut[@]}" -dither None -colors "$colors" -strip \
+      "PNG8:$FOLDER/$name.png"
+    [[ $(stat -c %s "$FOLDER/$name.png") -ge $LARGEST ]] || break
+  done
+  echo "$FOLDER/$name.png: $(stat -c %s "$FOLDER/$name.png") bytes"
+}
+
+shot window caustic 1280x720 all 6 <<'EOF'
+panel diagnostics off
+cloud shown 1200
+image fit
+EOF
+
+shot hint cornell 1280x720 760x420+250+36 4 <<'EOF'
+hint on
+cloud shown 400
+EOF
+
+shot paths caustic 1280x720 932x720+0+0 6 <<'EOF'
+cloud color strategy
+cloud shown 700
+scene opacity 0.4
+EOF
+
+shot image cornell 1280x900 352x640+928+34 10 <<'EOF'
+filter set film in rect(0.3, 0.3, 0.6, 0.5)
+EOF
+
+shot pixels cornell 1280x720 all 8 <<'EOF'
+panel diagnostics off
+panel statistics off
+filter set film in rect(0.72, 0.78, 0.86, 0.9)
+cloud shown 800
+EOF
+
+shot false-colour caustic 1280x900 352x640+928+34 10 <<'EOF'
+image tone false
+EOF
+
+# The first picture of a scene, as the reference of a later one.
+echo "image save short.exr" >"$work/save"
+look --scene cornell --wait 6 --run save
+shot compare cornell 1280x900 352x760+928+34 12 <<'EOF'
+image reference short.exr
+image exposure 1
+EOF
+
+shot chains door 1280x1080 352x1000+928+34 25 <<'EOF'
+panel image off
+panel statistics off
+EOF
+
+shot map-dwell door 1280x900 352x640+928+34 20 <<'EOF'
+image show dwell
+EOF
+
+shot map-disagreement door 1280x900 352x640+928+34 20 <<'EOF'
+image show disagreement
+EOF
+
+shot statistics caustic 1280x720 352x420+928+34 12 <<'EOF'
+panel image off
+panel diagnostics off
+EOF
+
+shot light door 1280x720 all 16 <<'EOF'
+theme light
+cloud color class
+panel diagnostics off
+EOF
+
+shot scaled caustic 1600x900 all 6 <<'EOF'
+scale 150
+panel diagnostics off
+panel scene off
+EOF
