@@ -1,5 +1,6 @@
 //! Who may steer, and what everyone hears of it.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use common::{
@@ -7,6 +8,9 @@ use common::{
     Role,
 };
 use proto::{NumberedOrder, TracerEvent, ViewerEvent, WantedFilter};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::task::JoinSet;
+use tokio_util::sync::CancellationToken;
 use tracer_server::hub::HubLimits;
 use tracer_server::service::{Access, Security, Server, Token};
 use tracer_server::steering::Orders;
@@ -33,7 +37,11 @@ impl Member {
     }
 
     async fn join_with(server: &Server, greeting: Greeting, token: Bearer) -> Self {
-        let peer = Peer { address: server.address().to_string(), trust: Trust::Plain, token };
+        Self::join_at(server.address().to_string(), greeting, token).await
+    }
+
+    async fn join_at(address: String, greeting: Greeting, token: Bearer) -> Self {
+        let peer = Peer { address, trust: Trust::Plain, token };
         let mut session = soon("a welcome", Session::open(&peer, greeting)).await.expect("welcome");
         let first = soon("a welcome", session.next()).await.expect("a welcome");
         let TracerEvent::Welcome(welcome) = first else { panic!("not a welcome: {first:?}") };
@@ -198,6 +206,66 @@ async fn a_viewer_comes_back_to_its_filter_and_its_role() {
     let unknown = Greeting { resume: "f".repeat(64), ..named("eve", Role::Driver) };
     let eve = Member::join(&server, unknown).await;
     assert_eq!(eve.role, Role::Observer, "a secret that was never given opens nothing");
+    fixture::stop(server).await;
+}
+
+/// Passes bytes on between whoever connects and `server` until `cut`, and then nothing at all, while the
+/// connections stay open: as a cable does that is pulled out.
+async fn cable(server: std::net::SocketAddr, cut: CancellationToken, ends: TcpListener) {
+    let mut held = Vec::new();
+    let mut passing = JoinSet::new();
+    while let Some(Ok((near, _))) = cut.run_until_cancelled(ends.accept()).await {
+        let far = TcpStream::connect(server).await.expect("the server listens");
+        let (near, far) = (Arc::new(near), Arc::new(far));
+        for (from, to) in [(&near, &far), (&far, &near)] {
+            passing.spawn(pass(Arc::clone(from), Arc::clone(to), cut.clone()));
+        }
+        held.push((near, far));
+    }
+    passing.join_all().await;
+    std::future::pending::<()>().await;
+    drop(held);
+}
+
+async fn pass(from: Arc<TcpStream>, to: Arc<TcpStream>, cut: CancellationToken) {
+    let mut buffer = vec![0; 1 << 16];
+    let passing = async {
+        loop {
+            from.readable().await.expect("an open connection");
+            let Ok(count) = from.try_read(&mut buffer) else { continue };
+            let mut sent = 0;
+            while sent < count {
+                to.writable().await.expect("an open connection");
+                sent += to.try_write(&buffer[sent..count]).unwrap_or(0);
+            }
+            if count == 0 {
+                return;
+            }
+        }
+    };
+    cut.run_until_cancelled(passing).await;
+}
+
+#[tokio::test]
+async fn a_driver_whose_cable_is_cut_loses_the_lease_and_comes_back_to_it() {
+    let (server, _orders) = start(Access::default());
+    let ends = TcpListener::bind("127.0.0.1:0").await.expect("a free port");
+    let address = ends.local_addr().expect("an address").to_string();
+    let cut = CancellationToken::new();
+    let mut tasks = JoinSet::new();
+    tasks.spawn(cable(server.address(), cut.clone(), ends));
+
+    let anna = Member::join_at(address, named("anna", Role::Driver), Bearer::default()).await;
+    assert_eq!(anna.role, Role::Driver);
+    let mut ben = Member::join(&server, named("ben", Role::Observer)).await;
+    ben.roles(&[(anna.number, Role::Driver, false), (ben.number, Role::Observer, false)]).await;
+    cut.cancel();
+    // No end of the stream ever comes: the daemon has to find out.
+    ben.roles(&[(ben.number, Role::Observer, false)]).await;
+    let greeting = Greeting { resume: anna.resume.clone(), ..named("anna", Role::Observer) };
+    let back = Member::join(&server, greeting).await;
+    assert_eq!(back.role, Role::Driver, "nobody took it");
+    tasks.abort_all();
     fixture::stop(server).await;
 }
 

@@ -111,7 +111,7 @@ impl Status {
         self.welcome = Some(welcome);
         self.statistics = None;
         self.filter = None;
-        self.steering.focus.clear();
+        self.steering.clear();
         self.mutation_history.clear();
         self.trends.clear();
     }

@@ -8,6 +8,8 @@ use common::{
     Presence, Role, VertexRecord,
 };
 
+use crate::film::Film;
+
 /// Steps of the explorer that are kept: at the fastest pace, several seconds of them.
 const KEPT_STEPS: usize = 10_000;
 /// Remarks that are kept.
@@ -24,6 +26,8 @@ pub struct Steering {
     pub chains: Option<ChainState>,
     /// The explorer's steps.
     pub focus: Focus,
+    /// The explorer's film: no part of the image.
+    pub film: Film,
     /// What the daemon answered and announced last, for people; the newest is the last.
     pub remarks: VecDeque<String>,
     /// Remarks that ever came: changes when there is a new one.
@@ -34,6 +38,12 @@ impl Steering {
     /// What this viewer may do, as far as it was told.
     pub fn role(&self, session: u64) -> Role {
         self.presence.get(session).map_or(Role::Observer, |viewer| viewer.role)
+    }
+
+    /// Forgets what belongs to a connection that is no more.
+    pub fn clear(&mut self) {
+        self.focus.clear();
+        self.film.clear();
     }
 
     /// Takes in a notice.

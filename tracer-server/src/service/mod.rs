@@ -44,10 +44,11 @@ const MAX_REQUEST_BYTES: usize = 64 << 10;
 const HELLO_TIMEOUT: Duration = Duration::from_secs(5);
 /// How long open streams may take to end on shutdown.
 const GRACE: Duration = Duration::from_secs(2);
-/// A peer that answers no ping for [`PING_TIMEOUT`] after this long is gone.
-const PING_INTERVAL: Duration = Duration::from_secs(20);
+/// A peer that answers no ping for [`PING_TIMEOUT`] after this long is gone, and its lease is free. It
+/// may have been suspended, and come back to what it had.
+const PING_INTERVAL: Duration = Duration::from_secs(5);
 /// See [`PING_INTERVAL`].
-const PING_TIMEOUT: Duration = Duration::from_secs(20);
+const PING_TIMEOUT: Duration = Duration::from_secs(10);
 /// Connections at a time: viewers, tools and whoever is refused.
 const MAX_CONNECTIONS: usize = 128;
 /// Streams that one connection may have open.

@@ -240,6 +240,11 @@ impl Viewer {
                 FocusNews::Gap(steps) => self.status.steering.focus.miss(steps),
             }
         }
+        for tile in delivery.explorer_film.values() {
+            if !self.status.steering.film.accept(tile) {
+                tracing::warn!("a tile of the explorer's film contradicts itself and was left out");
+            }
+        }
         let remarks = self.status.steering.remark_count;
         delivery.notices.into_iter().for_each(|notice| self.status.steering.take(notice));
         if self.status.steering.remark_count != remarks
