@@ -1,7 +1,7 @@
 //! The command line.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::{Context as _, anyhow};
@@ -19,6 +19,7 @@ Examples:
   viewer-client 127.0.0.1:50061          a running `tracer-server serve`
   viewer-client render-box:50061 --token-file token --fingerprint 3F:A2:...
   viewer-client --headless --screenshot-to view.png --wait-paths 20000
+  viewer-client paths.txt                a file of paths that Mitsuba 0.6 printed, step by step
   viewer-client watch 127.0.0.1:50061 --count 10
   viewer-client watch 127.0.0.1:50061 --focus --order 'explorer seed newest' \
       --order 'explorer step 20' --order 'explorer fan 2 8'
@@ -55,16 +56,19 @@ pub enum Action {
 /// How to view.
 #[derive(Clone, Debug, Args)]
 pub struct ViewArgs {
-    /// HOST:PORT of a running daemon, or a link to a view of one (lvis://...); without it, a daemon is
-    /// started inside this program.
-    #[arg(value_name = "ADDR", value_parser = address_or_link)]
-    pub address: Option<String>,
+    /// HOST:PORT of a running daemon, a link to a view of one (lvis://...), or a file of paths as
+    /// Mitsuba 0.6 prints them; without any, a daemon is started inside this program.
+    #[arg(value_name = "ADDR|FILE", value_parser = source)]
+    pub source: Option<Source>,
     /// How a daemon elsewhere is trusted.
     #[command(flatten)]
     pub trust: TrustArgs,
     /// Built-in scene or scene file for the daemon inside this program.
-    #[arg(long, value_name = "SCENE", conflicts_with = "address")]
+    #[arg(long, value_name = "SCENE", conflicts_with = "source")]
     pub scene: Option<String>,
+    /// Built-in scene or scene file whose surfaces are shown with a file of paths.
+    #[arg(long, value_name = "SCENE", requires = "source")]
+    pub surfaces: Option<String>,
     /// Draws without a window.
     #[arg(long, requires = "screenshot_to")]
     pub headless: bool,
@@ -83,6 +87,15 @@ pub struct ViewArgs {
     /// A file of commands to begin with, one a line; `--help` lists them.
     #[arg(long, value_name = "SCRIPT")]
     pub run: Option<PathBuf>,
+}
+
+/// Where paths come from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// HOST:PORT of a daemon, or a link to a view of one.
+    Daemon(String),
+    /// A file of paths.
+    File(PathBuf),
 }
 
 /// What to print.
@@ -183,6 +196,14 @@ fn long_help() -> String {
     )
 }
 
+fn source(text: &str) -> Result<Source, String> {
+    if Path::new(text).is_file() {
+        return Ok(Source::File(text.into()));
+    }
+    let no_file = |complaint| format!("there is no such file; for a daemon, {complaint}");
+    address_or_link(text).map(Source::Daemon).map_err(no_file)
+}
+
 fn address(text: &str) -> Result<String, String> {
     let text = text.trim_start_matches("http://");
     let port = text.rsplit_once(':').map(|(host, port)| (host.is_empty(), port.parse::<u16>()));
@@ -249,7 +270,7 @@ mod tests {
     fn the_contract_parses() {
         let parse = |line: &str| Cli::try_parse_from(line.split(' '));
         let cli = parse("viewer-client").expect("no arguments");
-        assert!(cli.view.address.is_none() && cli.action.is_none(), "the embedded daemon");
+        assert!(cli.view.source.is_none() && cli.action.is_none(), "the embedded daemon");
         let cli = parse(
             "viewer-client 127.0.0.1:5 --headless --screenshot-to a.png --size 640x360 --wait 2.5",
         );
@@ -275,6 +296,7 @@ mod tests {
             "viewer-client :50061",
             "viewer-client 127.0.0.1:99999",
             "viewer-client 127.0.0.1:5 --scene cornell",
+            "viewer-client --surfaces cornell",
             "viewer-client --headless",
             "viewer-client --headless --screenshot-to a.png --size 10x10",
             "viewer-client --headless --screenshot-to a.png --size 640",

@@ -4,6 +4,7 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::Arc;
 
 use anyhow::Context as _;
+use common::{SceneFrame, SceneMesh};
 use tracer_server::chain::EnsembleSettings;
 use tracer_server::cli::chains::of_scene;
 use tracer_server::daemon::{Daemon, DaemonOptions};
@@ -12,6 +13,12 @@ use tracer_server::scene::load::load;
 
 /// The scene that is shown when none is named.
 pub const DEFAULT_SCENE: &str = "cornell";
+
+/// The surfaces of a scene, and how their coordinates relate to those of its file.
+pub fn surfaces(scene: &str) -> anyhow::Result<(SceneFrame, SceneMesh)> {
+    let scene = Scene::new(&load(scene)?.description)?;
+    Ok((scene.frame(), scene.preview_mesh()))
+}
 
 /// Starts a daemon on a free port of this machine. It stops when it is dropped.
 pub fn start(scene: &str) -> anyhow::Result<Daemon> {

@@ -5,7 +5,8 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 
 use crate::command::{
     CameraCommand, CloudCommand, ColorMode, Command, DeskCommand, ImageCommand, LayoutCommand,
-    PanelName, PathCommand, SceneCommand, Shading, Side, Switch, ThemeName, VertexStep,
+    PanelName, PathCommand, PlayCommand, SceneCommand, Shading, Side, Switch, ThemeName,
+    VertexStep,
 };
 use crate::settings::SCALES;
 use crate::world::World;
@@ -127,14 +128,20 @@ pub const BINDINGS: &[Binding] = &[
         explore(ExplorerCommand::Seed(seed))
     }),
     bind(plain(Key::K), Group::Explorer, "play or pause", |w| {
+        if let Some(command) = in_file(w, PlayCommand::Run(Switch::Toggle)) {
+            return command;
+        }
         let state = &w.status.steering.explorer;
         let rate = if state.rate >= MIN_RATE { state.rate } else { 2.0 };
         let paused = state.pace == Pace::Paused;
         explore(if paused { ExplorerCommand::Play(rate) } else { ExplorerCommand::Pause })
     }),
-    bind(plain(Key::N), Group::Explorer, "one step", |_| explore(ExplorerCommand::Step(1))),
-    bind(shift(Key::N), Group::Explorer, "on to the next acceptance", |_| {
-        explore(ExplorerCommand::Skip(SkipTo::Acceptance))
+    bind(plain(Key::N), Group::Explorer, "one step", |w| {
+        in_file(w, PlayCommand::By(1)).unwrap_or_else(|| explore(ExplorerCommand::Step(1)))
+    }),
+    bind(shift(Key::N), Group::Explorer, "on to the next acceptance", |w| {
+        let skip = explore(ExplorerCommand::Skip(SkipTo::Acceptance));
+        in_file(w, PlayCommand::Accepted).unwrap_or(skip)
     }),
     bind(ctrl(Key::Z), Group::View, "undo", |_| Command::Undo),
     bind(ctrl(Key::Y), Group::View, "redo", |_| Command::Redo),
@@ -168,6 +175,11 @@ pub const BINDINGS: &[Binding] = &[
     bind(plain(Key::F1), Group::View, "this sheet; ? does it, too", |_| help()),
     bind(ctrl(Key::Q), Group::View, "quit", |_| Command::Quit),
 ];
+
+/// The command for a file of paths, where one is played.
+fn in_file(world: &World<'_>, command: PlayCommand) -> Option<Command> {
+    world.playback.map(|_| Command::Play(command))
+}
 
 fn explore(command: ExplorerCommand) -> Command {
     Command::Order(Order::Explorer(command))

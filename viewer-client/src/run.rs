@@ -1,15 +1,16 @@
 //! From the command line to a window, a picture or a list.
 
+use std::path::Path;
 use std::time::Duration;
 
 use anyhow::Context as _;
 
 use crate::app::Viewer;
-use crate::cli::{Action, Cli, ViewArgs};
+use crate::cli::{Action, Cli, Source, ViewArgs};
 use crate::connection::Peer;
 use crate::headless::Wait;
 use crate::status::Status;
-use crate::{bench, embedded, headless, script, share, watch, window};
+use crate::{bench, dump, embedded, headless, script, share, watch, window};
 
 /// A picture is taken after this long when nothing else is asked for.
 const DEFAULT_WAIT: Duration = Duration::from_secs(5);
@@ -24,7 +25,11 @@ pub fn run(cli: Cli) -> anyhow::Result<()> {
 }
 
 fn view(args: &ViewArgs) -> anyhow::Result<()> {
-    let link = args.address.as_deref().filter(|text| text.starts_with(share::SCHEME));
+    let text = match &args.source {
+        Some(Source::Daemon(text)) => Some(text.as_str()),
+        Some(Source::File(_)) | None => None,
+    };
+    let link = text.filter(|text| text.starts_with(share::SCHEME));
     let shared = link.map(share::read).transpose()?;
     let mut commands = Vec::new();
     let address = match shared {
@@ -32,17 +37,24 @@ fn view(args: &ViewArgs) -> anyhow::Result<()> {
             commands.extend(shared.commands);
             Some(shared.address)
         }
-        None => args.address.clone(),
+        None => text.map(str::to_owned),
     };
     commands.extend(args.run.as_deref().map(script::read).transpose()?.unwrap_or_default());
     // The daemon must outlive the viewer, which says goodbye to it.
-    let (peer, daemon) = if let Some(address) = address {
-        (args.trust.peer(address)?, None)
-    } else {
-        let daemon = embedded::start(args.scene.as_deref().unwrap_or(embedded::DEFAULT_SCENE))?;
-        (Peer::open(daemon.address().to_string()), Some(daemon))
+    let (peer, daemon) = match (address, &args.source) {
+        (Some(address), _) => (Some(args.trust.peer(address)?), None),
+        (None, Some(_)) => (None, None),
+        (None, None) => {
+            let daemon = embedded::start(args.scene.as_deref().unwrap_or(embedded::DEFAULT_SCENE))?;
+            (Some(Peer::open(daemon.address().to_string())), Some(daemon))
+        }
     };
-    let mut viewer = Viewer::new(Status::new(peer.address.clone(), daemon.is_some()));
+    let mut viewer = if let Some(Source::File(file)) = &args.source {
+        open(file, args.surfaces.as_deref())?
+    } else {
+        let address = peer.as_ref().map(|peer| peer.address.clone()).unwrap_or_default();
+        Viewer::new(Status::new(address, daemon.is_some()))
+    };
     viewer.run_script(commands);
     if let Some(file) = &args.screenshot_to {
         let wait = match (args.wait_paths, args.wait) {
@@ -53,4 +65,18 @@ fn view(args: &ViewArgs) -> anyhow::Result<()> {
     } else {
         window::run(viewer, peer).context("the viewer ended")
     }
+}
+
+/// A viewer of a file of paths, with the surfaces of a scene where one is named.
+fn open(file: &Path, surfaces: Option<&str>) -> anyhow::Result<Viewer> {
+    let read = dump::read(file)?;
+    for warning in &read.warnings {
+        tracing::warn!("{}: {warning}", file.display());
+    }
+    let scene = surfaces.map(embedded::surfaces).transpose()?;
+    let name =
+        file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let mut viewer = Viewer::new(Status::new(name.clone(), false));
+    viewer.open_dump(&name, dump::Stage::new(read, scene));
+    Ok(viewer)
 }

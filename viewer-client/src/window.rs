@@ -31,8 +31,8 @@ pub(crate) fn graphics_setup() -> WgpuSetupCreateNew {
     }
 }
 
-/// Opens the window, and returns when it is closed.
-pub fn run(viewer: Viewer, peer: Peer) -> anyhow::Result<()> {
+/// Opens the window, and returns when it is closed. Without a daemon, the viewer has all it needs.
+pub fn run(viewer: Viewer, peer: Option<Peer>) -> anyhow::Result<()> {
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("Lvis")
@@ -55,7 +55,9 @@ pub fn run(viewer: Viewer, peer: Peer) -> anyhow::Result<()> {
             let waker: Waker = Box::new(move || ctx.request_repaint_after(FRAME));
             Link::start(peer, waker)
         });
-        viewer.set_link(connect(peer)?);
+        if let Some(peer) = peer {
+            viewer.set_link(connect(peer)?);
+        }
         let habits = Habits::file().map(|file| Habits::load(&file)).unwrap_or_default();
         viewer.adopt(habits, connect);
         let app: Box<dyn eframe::App> = Box::new(Window { viewer, pace: Pace::default() });

@@ -5,9 +5,11 @@ use std::time::Instant;
 use common::Diagnostics;
 
 use crate::camera::ViewCamera;
+use crate::command::PanelName;
 use crate::film::Film;
 use crate::imaging::Reference;
 use crate::model::Model;
+use crate::playback::Playback;
 use crate::selection::{Names, Selection};
 use crate::settings::Settings;
 use crate::status::Status;
@@ -37,6 +39,8 @@ pub struct World<'a> {
     pub scrub: Option<u64>,
     /// HOST:PORT of daemons that were watched, the newest first.
     pub recent: &'a [String],
+    /// The file of paths that is played, if one is.
+    pub playback: Option<&'a Playback>,
     /// The scene, once it has come.
     pub model: Option<&'a Model>,
     /// When the frame began.
@@ -47,6 +51,18 @@ impl World<'_> {
     /// How well the chains explore, as far as it is known.
     pub fn diagnostics(&self) -> Option<&Diagnostics> {
         self.status.statistics.as_ref()?.diagnostics.as_deref()
+    }
+
+    /// True where a panel has something to show: a file of paths has no chains that run.
+    pub fn has_use_for(&self, panel: PanelName) -> bool {
+        match panel {
+            PanelName::Playback => self.playback.is_some(),
+            PanelName::Explorer
+            | PanelName::Statistics
+            | PanelName::Diagnostics
+            | PanelName::Image => self.playback.is_none(),
+            PanelName::Cloud | PanelName::Scene | PanelName::Path => true,
+        }
     }
 
     /// What names and units the description of a path needs.

@@ -1,5 +1,7 @@
 //! The viewer itself: owns what came, what the user chose, and what is on the graphics card.
 
+mod playing;
+
 use std::collections::VecDeque;
 use std::time::Instant;
 
@@ -19,6 +21,7 @@ use crate::keys;
 use crate::model::{Model, corners, drawing_aids};
 use crate::panel::{self, NOTICE_TIME, Panel, Slot};
 use crate::pick::{self, Aim, Pickable};
+use crate::playback::Playback;
 use crate::selection::Selection;
 use crate::settings::Settings;
 use crate::share;
@@ -62,6 +65,8 @@ pub struct Viewer {
     selection: Option<Selection>,
     pointed: Option<Aim>,
     history: History<Settings>,
+    /// A file of paths in the place of a daemon.
+    playback: Option<Playback>,
     /// Number of the explorer's step that is shown; the newest without.
     scrub: Option<u64>,
 }
@@ -99,6 +104,7 @@ impl Viewer {
             selection: None,
             pointed: None,
             history: History::default(),
+            playback: None,
             scrub: None,
         }
     }
@@ -358,6 +364,7 @@ impl Viewer {
             Command::Path(PathCommand::Pick(aim)) => self.pick(aim),
             Command::Path(PathCommand::Deselect) => self.selection = None,
             Command::Path(PathCommand::Vertex(step)) => self.look_at_vertex(step),
+            Command::Play(command) => self.play(command),
             Command::Scrub(number) => self.scrub = number,
             // What these change is not what they can undo.
             Command::Undo | Command::Redo => {}
@@ -483,6 +490,7 @@ impl Viewer {
         ui.ctx().set_theme(theme);
         ui.ctx().set_zoom_factor(f32::from(self.settings.layout.scale) / 100.0);
         self.desk.work(ui.ctx(), &mut self.darkroom, &mut self.status);
+        self.play_on(ui.ctx());
         let was_through = self.camera.is_through();
         let mut commands = Vec::new();
         let world = World {
@@ -493,7 +501,11 @@ impl Viewer {
             film: &self.darkroom.film,
             reference: self.darkroom.reference.as_ref(),
             selection: self.selection.as_ref(),
-            moment: self.status.steering.focus.moment(self.scrub),
+            moment: match &self.playback {
+                Some(playback) => playback.moment(),
+                None => self.status.steering.focus.moment(self.scrub),
+            },
+            playback: self.playback.as_ref(),
             scrub: self.scrub,
             recent: &self.desk.habits.recent,
             model: self.model.as_ref(),

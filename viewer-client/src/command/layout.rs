@@ -34,6 +34,8 @@ pub enum PanelName {
     Path,
     /// The chain that the user steps.
     Explorer,
+    /// The file of paths that is played.
+    Playback,
     /// Counts and rates.
     Statistics,
     /// Whether the chains can be believed.
@@ -42,12 +44,13 @@ pub enum PanelName {
 
 impl PanelName {
     /// All of them, from the left of the window to the right.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Cloud,
         Self::Scene,
         Self::Image,
         Self::Path,
         Self::Explorer,
+        Self::Playback,
         Self::Statistics,
         Self::Diagnostics,
     ];
@@ -62,6 +65,7 @@ impl PanelName {
             Self::Diagnostics => "Chains",
             Self::Path => "Selected path",
             Self::Explorer => "Explorer",
+            Self::Playback => "Playback",
         }
     }
 }
@@ -76,6 +80,7 @@ impl fmt::Display for PanelName {
             Self::Diagnostics => "diagnostics",
             Self::Path => "path",
             Self::Explorer => "explorer",
+            Self::Playback => "playback",
         })
     }
 }
@@ -109,7 +114,7 @@ impl fmt::Display for ThemeName {
 pub(super) const FORMS: &[Form] = &[
     (
         "panel NAME on|off|toggle",
-        "cloud, scene, image, path, explorer, statistics, diagnostics: open or close it",
+        "cloud, scene, image, path, explorer, playback, statistics, diagnostics: open or close it",
     ),
     ("theme dark|light|toggle", "colours of the interface"),
     ("help on|off|toggle", "the sheet of keys"),

@@ -11,6 +11,7 @@ mod filter;
 mod image;
 mod layout;
 mod path;
+mod play;
 mod scene;
 mod steer;
 mod words;
@@ -22,6 +23,7 @@ pub use filter::FilterCommand;
 pub use image::{ImageCommand, Layer, ToneCurve};
 pub use layout::{LayoutCommand, PanelName, ThemeName};
 pub use path::{PathCommand, VertexStep};
+pub use play::PlayCommand;
 pub use scene::{ClipSide, SceneCommand, Shading};
 pub use words::{CommandError, Switch};
 
@@ -52,6 +54,8 @@ pub enum Command {
     Order(Order),
     /// Concerns the path that is looked at.
     Path(PathCommand),
+    /// Plays a file of paths.
+    Play(PlayCommand),
     /// Shows a step of the explorer by its number, or the newest from now on.
     Scrub(Option<u64>),
     /// Takes back what was done last.
@@ -78,7 +82,7 @@ const OWN_FORMS: [Form; 4] = [
 pub fn forms() -> impl Iterator<Item = Form> {
     [camera::FORMS, cloud::FORMS, scene::FORMS, filter::FORMS, image::FORMS]
         .into_iter()
-        .chain([layout::FORMS, path::FORMS, desk::FORMS, steer::FORMS, &OWN_FORMS])
+        .chain([layout::FORMS, path::FORMS, play::FORMS, desk::FORMS, steer::FORMS, &OWN_FORMS])
         .flatten()
         .copied()
 }
@@ -95,6 +99,7 @@ impl fmt::Display for Command {
             Self::Desk(command) => write!(f, "{command}"),
             Self::Order(order) => write!(f, "{}", steer::Text(*order)),
             Self::Path(command) => write!(f, "path {command}"),
+            Self::Play(command) => write!(f, "play {command}"),
             Self::Scrub(Some(number)) => write!(f, "explorer show {number}"),
             Self::Scrub(None) => write!(f, "explorer show live"),
             Self::Undo => write!(f, "undo"),
@@ -126,6 +131,7 @@ impl FromStr for Command {
                 Self::Order(steer::parse(group, &mut words)?)
             }
             "path" => Self::Path(path::parse(&mut words)?),
+            "play" => Self::Play(play::parse(&mut words)?),
             "undo" => Self::Undo,
             "redo" => Self::Redo,
             "reconnect" => Self::Reconnect,
@@ -155,7 +161,8 @@ mod tests {
         image show difference\nimage tone gamma\nimage gamma 1.8\nimage reference a b.exr\n\
         image forget\nimage save out.png\nimage tev 127.0.0.1:14158\n\
         panel statistics off\ntheme light\nhelp toggle\nhint off\nscale 125\n\
-        path pick 0.1 -0.2 0.01\npath none\npath vertex 3\n\
+        path pick 0.1 -0.2 0.01\npath none\npath vertex 3\nplay toggle\nplay rate 0.5\nplay to 7\n\
+        play by -2\nplay accepted\n\
         connect 127.0.0.1:50061\nshare\nscreenshot a b.png\n\
         explorer seed 3.0.1024\nexplorer play 2.5\nexplorer pause\nexplorer step 10\n\
         explorer skip accepted\nexplorer allow 0,2,5\nexplorer fan 2 100\nexplorer show live\n\

@@ -27,18 +27,20 @@ pub enum Wait {
     Time(Duration),
 }
 
-/// Connects, waits, and writes the picture.
+/// Connects, waits, and writes the picture. Without a daemon, everything is there already.
 pub fn run(
     mut viewer: Viewer,
-    peer: Peer,
+    peer: Option<Peer>,
     size: [u32; 2],
     wait: Wait,
     file: &Path,
 ) -> anyhow::Result<()> {
     let mut stage = Stage::new(size)?;
-    let waker: Waker = Box::new(|| {});
-    viewer.set_link(Link::start(peer, waker)?);
-    wait_for(&mut viewer, wait)?;
+    if let Some(peer) = peer {
+        let waker: Waker = Box::new(|| {});
+        viewer.set_link(Link::start(peer, waker)?);
+        wait_for(&mut viewer, wait)?;
+    }
     let image = stage.settled(&mut viewer)?;
     image.save(file).with_context(|| format!("cannot write {}", file.display()))
 }

@@ -13,6 +13,7 @@ mod image;
 mod menu;
 mod notice;
 mod path;
+mod playback;
 mod scene;
 mod statistics;
 mod status;
@@ -63,6 +64,7 @@ pub fn all() -> Vec<(Slot, Box<dyn Panel>)> {
         (Slot::Right(PanelName::Image), Box::new(image::ImagePanel::default())),
         (Slot::Right(PanelName::Path), Box::new(path::PathPanel)),
         (Slot::Right(PanelName::Explorer), Box::new(explorer::ExplorerPanel::default())),
+        (Slot::Right(PanelName::Playback), Box::new(playback::PlaybackPanel)),
         (Slot::Right(PanelName::Statistics), Box::new(statistics::StatisticsPanel)),
         (Slot::Right(PanelName::Diagnostics), Box::new(diagnostics::DiagnosticsPanel)),
         (Slot::Centre, Box::new(viewport::Viewport)),
@@ -100,7 +102,9 @@ pub fn show(
         }
     }
     let open = |slot: Slot| match slot {
-        Slot::Left(name) | Slot::Right(name) => world.settings.layout.is_open(name),
+        Slot::Left(name) | Slot::Right(name) => {
+            world.settings.layout.is_open(name) && world.has_use_for(name)
+        }
         _ => false,
     };
     let is_left = |slot: Slot| matches!(slot, Slot::Left(_)) && open(slot);

@@ -36,7 +36,8 @@ fn connection(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     match &status.link {
         LinkState::Connected => {
             dot(ui, theme::GOOD);
-            let text = format!("Connected to {place}");
+            let word = if world.playback.is_some() { "Playing" } else { "Connected to" };
+            let text = format!("{word} {place}");
             let tip = status.welcome.as_ref().map_or_else(String::new, |w| {
                 format!(
                     "Session {}, daemon {}, connection made anew {} times",

@@ -32,6 +32,7 @@ pub(super) struct Stage {
     pub(super) selection: Option<Selection>,
     pub(super) recent: Vec<String>,
     pub(super) model: Option<crate::model::Model>,
+    pub(super) playback: Option<crate::playback::Playback>,
     pub(super) panel: Box<dyn Panel>,
     pub(super) said: Vec<Command>,
 }
@@ -48,6 +49,7 @@ impl Stage {
             selection: None,
             recent: Vec::new(),
             model: None,
+            playback: None,
             panel: Box::new(panel),
             said: Vec::new(),
         }
@@ -67,6 +69,7 @@ impl Stage {
                     moment: stage.status.steering.focus.moment(None),
                     scrub: None,
                     recent: &stage.recent,
+                    playback: stage.playback.as_ref(),
                     model: stage.model.as_ref(),
                     now: Instant::now(),
                 };
@@ -388,6 +391,7 @@ fn long_numbers_do_not_widen_their_panel() {
                 moment: stage.status.steering.focus.moment(None),
                 scrub: None,
                 recent: &stage.recent,
+                playback: None,
                 model: stage.model.as_ref(),
                 now: Instant::now(),
             };
@@ -543,4 +547,25 @@ fn dragging_in_the_viewport_turns_the_camera() {
         })
         .sum();
     assert!((turned - 20.0).abs() < 0.5, "a tenth of the height turns 20 degrees, not {turned}");
+}
+
+#[test]
+fn a_file_of_paths_is_stepped_and_told() {
+    let mut stage = Stage::new(playback::PlaybackPanel);
+    let mut file = crate::playback::Playback::new(crate::dump::tests::stage());
+    file.apply(crate::command::PlayCommand::To(2));
+    stage.playback = Some(file);
+    let mut harness = stage.harness();
+    harness.run();
+    for text in
+        ["Step 3 of 4", "rejected, a = 0.2500", "E - e - c", "lens: 0.0 % of 2 accepted, 1 failed"]
+    {
+        assert!(shows(&harness, text), "`{text}` is missing");
+    }
+    for button in ["Accepted", "Back", "Play"] {
+        harness.get_by_label(button).click();
+        harness.run();
+    }
+    let said: Vec<String> = harness.state().said.iter().map(ToString::to_string).collect();
+    assert_eq!(said, ["play accepted", "play by -1", "play toggle"], "three clicks");
 }

@@ -1,0 +1,188 @@
+//! Light paths written to a text file by Mitsuba 0.6's path space MLT, as its `Path` prints itself.
+//!
+//! [`read`] makes a [`Dump`] of such a file: the records in the order of the file, and the steps
+//! of the chains, which the `#` lines of an annotated file tell, rejected ones included.
+//! [`Stage`] brings them into the units and the vocabulary of the viewer.
+
+mod annotation;
+mod parse;
+mod record;
+mod stage;
+#[cfg(test)]
+pub(crate) mod tests;
+
+use std::io::{BufRead as _, BufReader, Read as _};
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use thiserror::Error;
+
+use common::{Event, VertexKind};
+
+pub use stage::{Act, Stage};
+
+/// No file is larger.
+const LARGEST: u64 = 1 << 31;
+/// No line is longer, in bytes.
+const LONGEST_LINE: u64 = 1 << 20;
+
+/// Why a file is no dump of paths.
+#[derive(Debug, Error)]
+pub enum DumpError {
+    /// The file cannot be read.
+    #[error("cannot read {0}: {1}")]
+    Unreadable(PathBuf, std::io::Error),
+    /// The file is too large.
+    #[error("{0} is larger than 2 GiB; split it between two records")]
+    TooLarge(PathBuf),
+    /// Something in a line is wrong.
+    #[error("{file}, line {line}: {problem}")]
+    BadLine {
+        /// The file.
+        file: PathBuf,
+        /// Its line, counted from one.
+        line: usize,
+        /// What is wrong, and what should stand there.
+        problem: String,
+    },
+    /// There is no path in it.
+    #[error(
+        "{0} holds no path: a record begins with a line `Path[` and ends with a line `]`, as \
+         Mitsuba 0.6 prints paths"
+    )]
+    Empty(PathBuf),
+}
+
+/// What is wrong in a line; the line is counted from one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Fault {
+    pub(crate) line: usize,
+    pub(crate) problem: String,
+}
+
+/// A vertex of a record, in the units of the file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DumpVertex {
+    /// Where it is.
+    pub position: DVec3,
+    /// The geometric normal; zero where the file tells none.
+    pub normal: DVec3,
+    /// Heckbert's letter.
+    pub kind: VertexKind,
+    /// The lobe that scattered here.
+    pub event: Event,
+    /// The shape that it lies on, or what stands there.
+    pub shape: String,
+}
+
+/// One path, from the light to the lens.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// The line where it begins.
+    pub line: usize,
+    /// Its vertices, without the formal ones at the ends.
+    pub vertices: Vec<DumpVertex>,
+    /// Where it meets the film, in pixels to the right and downwards.
+    pub pixel: [f64; 2],
+}
+
+/// What became of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// The chain begins with this path.
+    Seed,
+    /// The proposal is the current path now. Its acceptance probability, where the file tells it.
+    Accepted(Option<f64>),
+    /// The proposal lost against this acceptance probability.
+    Rejected(f64),
+    /// The strategy made no proposal.
+    Failed,
+}
+
+impl Outcome {
+    /// A word for lists.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Seed => "seed",
+            Self::Accepted(_) => "accepted",
+            Self::Rejected(_) => "rejected",
+            Self::Failed => "failed",
+        }
+    }
+
+    /// True where the step has a record.
+    pub fn has_path(self) -> bool {
+        matches!(self, Self::Seed | Self::Accepted(_))
+    }
+}
+
+/// One step of a chain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// The line that tells of it.
+    pub line: usize,
+    /// The chain.
+    pub chain: u32,
+    /// Its number in the chain; the seed is 0.
+    pub number: u64,
+    /// What became of it.
+    pub outcome: Outcome,
+    /// The name of the mutation; blank where the file tells none.
+    pub mutation: String,
+    /// Film point of the proposal in pixels, where there is one.
+    pub pixel: Option<[f64; 2]>,
+    /// The proposal's vertices as Mitsuba abbreviates them; blank where there is none.
+    pub configuration: String,
+    /// Index of the record that is current after the step.
+    pub record: usize,
+}
+
+/// What the sensor's description tells of the camera, where it tells it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sensor {
+    /// Full fields of view in degrees, horizontal and vertical.
+    pub fov: Option<[f64; 2]>,
+    /// Size of the film in pixels.
+    pub film: Option<[f64; 2]>,
+}
+
+/// A file of paths.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Dump {
+    /// The paths.
+    pub records: Vec<Record>,
+    /// The steps that made them, rejected ones included where the file is annotated.
+    pub steps: Vec<Step>,
+    /// The file tells what became of every step.
+    pub annotated: bool,
+    /// The camera.
+    pub sensor: Sensor,
+    /// What was left out, for people.
+    pub warnings: Vec<String>,
+}
+
+/// Reads a file of paths.
+pub fn read(file: &Path) -> Result<Dump, DumpError> {
+    let unreadable = |error| DumpError::Unreadable(file.to_owned(), error);
+    let opened = std::fs::File::open(file).map_err(unreadable)?;
+    if opened.metadata().map_err(unreadable)?.len() > LARGEST {
+        return Err(DumpError::TooLarge(file.to_owned()));
+    }
+    let bad_line = |Fault { line, problem }| {
+        let file = file.to_owned();
+        DumpError::BadLine { file, line, problem }
+    };
+    let mut parser = parse::Parser::default();
+    let mut source = BufReader::new(opened);
+    let mut bytes = Vec::new();
+    loop {
+        bytes.clear();
+        let mut line = source.by_ref().take(LONGEST_LINE);
+        if line.read_until(b'\n', &mut bytes).map_err(unreadable)? == 0 {
+            break;
+        }
+        parser.line(&String::from_utf8_lossy(&bytes)).map_err(bad_line)?;
+    }
+    let dump = parser.finish();
+    if dump.records.is_empty() { Err(DumpError::Empty(file.to_owned())) } else { Ok(dump) }
+}

@@ -1,0 +1,174 @@
+//! The file, line by line. Depth is told by blanks: records at 0, vertices and edges at 2.
+
+use common::MAX_VERTICES;
+use glam::DVec3;
+
+use super::annotation::{self, Annotation};
+use super::record::OpenVertex;
+use super::{Dump, Fault, Outcome, Record, Step};
+
+/// Formal vertices, one at each end.
+const FORMAL: usize = 2;
+
+/// What the lines so far have made.
+#[derive(Debug, Default)]
+pub(super) struct Parser {
+    line: usize,
+    dump: Dump,
+    open: Option<OpenRecord>,
+    chain: u32,
+    /// A step whose record is still to come, and its line.
+    due: Option<(Annotation, usize)>,
+    /// Lines that belong to nothing.
+    foreign: usize,
+}
+
+#[derive(Debug, Default)]
+struct OpenRecord {
+    line: usize,
+    vertices: Vec<(OpenVertex, usize)>,
+    /// The keys that come belong to the last vertex, and to no edge.
+    in_vertex: bool,
+}
+
+impl Parser {
+    /// Reads the next line.
+    pub(super) fn line(&mut self, text: &str) -> Result<(), Fault> {
+        self.line += 1;
+        let line = self.line;
+        let read = self.read(text.trim_end_matches(['\n', '\r']));
+        // A line without an end may have been cut off anywhere; its record then has no end either.
+        let whole = text.ends_with('\n') || self.open.is_none();
+        read.or_else(|problem| if whole { Err(Fault { line, problem }) } else { Ok(()) })
+    }
+
+    fn read(&mut self, text: &str) -> Result<(), String> {
+        if text == "Path[" {
+            // One that was not closed was written by a program that was stopped.
+            self.drop_open();
+            self.open = Some(OpenRecord { line: self.line, ..OpenRecord::default() });
+            return Ok(());
+        }
+        let Some(record) = &mut self.open else {
+            if let Some(note) = text.strip_prefix('#') {
+                return self.note(note);
+            }
+            self.foreign += usize::from(!text.trim().is_empty());
+            return Ok(());
+        };
+        let inner = text.trim_start_matches(' ');
+        match text.len() - inner.len() {
+            0 if inner == "]" => {
+                let Some(record) = self.open.take() else { return Ok(()) };
+                return self.close(record);
+            }
+            2 if inner.starts_with("Vertex ") => {
+                let expected = format!("Vertex {} => PathVertex[", record.vertices.len());
+                if inner != expected {
+                    return Err(format!("`{expected}` should stand here"));
+                }
+                if record.vertices.len() == MAX_VERTICES + FORMAL {
+                    return Err(format!("no path may have more than {MAX_VERTICES} vertices"));
+                }
+                record.in_vertex = true;
+                record.vertices.push((OpenVertex::default(), self.line));
+            }
+            2 => record.in_vertex = false,
+            depth if record.in_vertex => {
+                if let Some((vertex, _)) = record.vertices.last_mut() {
+                    vertex.line(depth, inner, &mut self.dump.sensor)?;
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn note(&mut self, text: &str) -> Result<(), String> {
+        let Some(note) = annotation::parse(text.trim())? else { return Ok(()) };
+        self.dump.annotated = true;
+        if let Some(chain) = note.chain {
+            self.chain = chain;
+        }
+        if note.outcome.has_path() {
+            self.due = Some((note, self.line));
+        } else if let Some(last) = self.dump.records.len().checked_sub(1) {
+            self.push_step(note, self.line, last);
+        } else {
+            return Err("a chain begins with a seed: a line `# seed ...` and its record".to_owned());
+        }
+        Ok(())
+    }
+
+    fn push_step(&mut self, note: Annotation, line: usize, record: usize) {
+        let Annotation { number, outcome, mutation, pixel, configuration, .. } = note;
+        let chain = self.chain;
+        let step = Step { line, chain, number, outcome, mutation, pixel, configuration, record };
+        self.dump.steps.push(step);
+    }
+
+    fn close(&mut self, open: OpenRecord) -> Result<(), String> {
+        let line = open.line;
+        let record =
+            open.close().map_err(|problem| format!("the record of line {line}: {problem}"))?;
+        let index = self.dump.records.len();
+        let (note, line) = self.due.take().unwrap_or_else(|| {
+            let first = index == 0;
+            let outcome = if first { Outcome::Seed } else { Outcome::Accepted(None) };
+            let note = Annotation {
+                chain: None,
+                number: self.dump.steps.last().map_or(0, |step| step.number + 1),
+                outcome,
+                mutation: String::new(),
+                pixel: Some(record.pixel),
+                configuration: String::new(),
+            };
+            (note, line)
+        });
+        self.dump.records.push(record);
+        self.push_step(note, line, index);
+        Ok(())
+    }
+
+    fn drop_open(&mut self) {
+        if let Some(record) = self.open.take() {
+            let text = format!("the record of line {} has no end and was left out", record.line);
+            self.dump.warnings.push(text);
+            self.due = None;
+        }
+    }
+
+    /// What was read, when no line is left.
+    pub(super) fn finish(mut self) -> Dump {
+        self.drop_open();
+        if self.foreign > 0 {
+            let text = format!("{} lines outside of records were left out", self.foreign);
+            self.dump.warnings.push(text);
+        }
+        self.dump
+    }
+}
+
+impl OpenRecord {
+    fn close(self) -> Result<Record, String> {
+        let pixel = self.vertices.iter().rev().find_map(|(vertex, _)| vertex.pixel);
+        let real: Vec<_> = self.vertices.into_iter().filter(|(v, _)| !v.is_formal()).collect();
+        let places: Vec<Option<DVec3>> = real.iter().map(|(vertex, _)| vertex.position()).collect();
+        let place = |i: usize| places.get(i).copied().flatten();
+        let mut vertices = Vec::with_capacity(real.len());
+        for (i, (vertex, line)) in real.into_iter().enumerate() {
+            let before = i.checked_sub(1).and_then(place);
+            let vertex = vertex.close(before, place(i + 1));
+            vertices
+                .push(vertex.map_err(|problem| format!("the vertex of line {line}: {problem}"))?);
+        }
+        let kind = |vertex: Option<&super::DumpVertex>| vertex.map(|v| v.kind);
+        let light = kind(vertices.first()) == Some(common::VertexKind::Light);
+        let eye = kind(vertices.last()) == Some(common::VertexKind::Eye);
+        if vertices.len() < 2 || !light || !eye {
+            return Err("a path leads from an emitterSample to a sensorSample".to_owned());
+        }
+        let pixel = pixel.ok_or("the sensorSample has no film point `uv = [x, y]`")?;
+        Ok(Record { line: self.line, vertices, pixel })
+    }
+}

@@ -1,0 +1,216 @@
+//! Files of every kind.
+
+use std::path::PathBuf;
+
+use common::{Event, VertexKind};
+
+use super::parse::Parser;
+use super::*;
+
+/// A path from a lamp over a mirror to the camera.
+const RECORD: &str = "\
+Path[
+  Vertex 0 => PathVertex[
+    type = emitterSupernode,
+    data = EndpointRecord[time=0],
+  ],
+  Edge 0 => PathEdge[
+    length = 0
+  ],
+  Vertex 1 => PathVertex[
+    type = emitterSample,
+    data = PositionSamplingRecord[
+      p = [0, 4, 0],
+      n = [0, -1, 0],
+      uv = [0.5, 0.5],
+      object = AreaLight[
+        p = [9, 9, 9]
+      ]
+    ],
+    degenerate = false
+  ],
+  Edge 1 => PathEdge[
+    length = 4
+  ],
+  Vertex 2 => PathVertex[
+    type = surfaceInteraction,
+    data = Intersection[
+      p = [0, 0, 0],
+      geoFrame = Frame[
+        n = [0, 1, 0]
+      ],
+      shFrame = Frame[
+        n = [1, 0, 0]
+      ],
+      novelty = 7,
+      shape = Rectangle[
+        name = \"floor, polished\",
+        bsdf = X[
+          name = \"no\"
+        ]
+      ]
+    ],
+    componentType = 32,
+    degenerate = true,
+    measure = discrete,
+  ],
+  Edge 2 => PathEdge[
+    length = 4
+  ],
+  Vertex 3 => PathVertex[
+    type = sensorSample,
+    data = PositionSamplingRecord[
+      p = [4, 4, 0],
+      n = [-1, 0, 0],
+      uv = [12.5, 30.25],
+      object = PerspectiveCamera[
+        fov = [40, 30],
+        film = HDRFilm[
+          size = [64, 48],
+        ]
+      ]
+    ]
+  ],
+  Edge 3 => PathEdge[
+    length = 0
+  ],
+  Vertex 4 => PathVertex[
+    type = sensorSupernode,
+    data = EndpointRecord[time=0],
+  ]
+]
+";
+
+fn parse(text: &str) -> Result<Dump, Fault> {
+    let mut parser = Parser::default();
+    for line in text.split_inclusive('\n') {
+        parser.line(line)?;
+    }
+    Ok(parser.finish())
+}
+
+#[test]
+fn a_record_is_read_with_its_nested_keys() {
+    let dump = parse(RECORD).expect("a record");
+    let record = &dump.records[0];
+    let kinds: Vec<_> = record.vertices.iter().map(|v| (v.kind, v.event)).collect();
+    let mirror = (VertexKind::Specular, Event::Reflect);
+    let ends = [(VertexKind::Light, Event::End), (VertexKind::Eye, Event::End)];
+    assert_eq!(kinds, [ends[0], mirror, ends[1]], "L S E");
+    let mirror = &record.vertices[1];
+    assert_eq!(mirror.normal.to_array(), [0.0, 1.0, 0.0], "of the geometry, not for shading");
+    assert_eq!(mirror.shape, "floor, polished", "the shape's own name");
+    assert_eq!(record.vertices[0].position.to_array(), [0.0, 4.0, 0.0], "not the object's");
+    assert_eq!(record.pixel, [12.5, 30.25], "of the sensor");
+    assert_eq!(dump.sensor, Sensor { fov: Some([40.0, 30.0]), film: Some([64.0, 48.0]) });
+    let windows = parse(&RECORD.replace('\n', "\r\n")).expect("other line ends");
+    assert_eq!(windows, dump, "line ends do not matter");
+}
+
+#[test]
+fn a_truncated_record_is_left_out_and_told() {
+    for cut in 6..RECORD.len() - 2 {
+        let dump = parse(&format!("{RECORD}{}", &RECORD[..cut])).expect("a dump");
+        assert_eq!((dump.records.len(), dump.warnings.len()), (1, 1), "{:?}", dump.warnings);
+        assert!(dump.warnings[0].contains("line 71"), "{:?}", dump.warnings);
+    }
+}
+
+/// Steps of [`annotated`].
+pub(crate) const STEPS: usize = 4;
+
+fn annotated() -> Dump {
+    let text = format!(
+        "# a remark\n# seed chain=4 step=0 pixel=12.5,30.25 k=4 config=E - e - Sd - c - Cd\n{RECORD}\
+         # step=0 failed mut=lens\n# step=1 rejected mut=lens a=0.25 pixel=1,2 k=3 config=E - e - c\n\
+         # step=2 accepted mut=bidirectional a=0.5 l=0 m=2 ka=2 pixel=1,2 k=4 config=E\n{RECORD}"
+    );
+    parse(&text).expect("an annotated dump")
+}
+
+/// A dump of two paths and four steps, ready to be played.
+pub(crate) fn stage() -> Stage {
+    Stage::new(annotated(), None)
+}
+
+#[test]
+fn steps_are_told_with_what_was_rejected() {
+    let dump = annotated();
+    let told: Vec<_> = dump.steps.iter().map(|s| (s.number, s.outcome, s.record)).collect();
+    let accepted = Outcome::Accepted(Some(0.5));
+    let expected = [
+        (0, Outcome::Seed, 0),
+        (1, Outcome::Failed, 0),
+        (2, Outcome::Rejected(0.25), 0),
+        (3, accepted, 1),
+    ];
+    assert_eq!(told, expected, "every step");
+    assert!(dump.steps.iter().all(|s| s.chain == 4), "of the chain");
+    let stage = Stage::new(dump, None);
+    let [seed, next] = [&stage.acts[0].header, &stage.acts[1].header];
+    assert_eq!((seed.dwell, seed.weight, next.dwell), (2, 3.0, 0), "how long it stayed");
+    assert_eq!((next.id.to_string(), next.acceptance), ("4.0.3".to_owned(), 0.5), "its name");
+    assert_eq!(stage.strategies, ["lens", "bidirectional"], "the mutations");
+    assert_eq!(seed.film, [12.5 / 64.0, 30.25 / 48.0], "on the film");
+}
+
+#[test]
+fn faults_name_their_line() {
+    for (from, to, line, part) in [
+        ("p = [0, 0, 0]", "p = [0, nan, 0]", 27, "3 finite numbers"),
+        ("p = [0, 0, 0]", "q = [0, 0, 0]", 70, "line 24"),
+        ("Vertex 2 =>", "Vertex 3 =>", 24, "Vertex 2"),
+        ("type = emitterSample", "type = teapot", 70, "`teapot`"),
+        ("type = emitterSample", "type = emitterSupernode", 70, "emitterSample"),
+        ("componentType = 32", "componentType = x", 42, "is no number"),
+        ("Path[", "# step=1 rejected mut=lens\nPath[", 1, "`a=A`"),
+        ("Path[", "# step=1 failed mut=lens\nPath[", 1, "begins with a seed"),
+        ("Path[", "# seed chain=x step=0\nPath[", 1, "`chain=x`"),
+        ("Path[", "# seed chain=1\nPath[", 1, "`step=N`"),
+    ] {
+        let fault = parse(&RECORD.replacen(from, to, 1)).expect_err(to);
+        assert!(fault.problem.contains(part), "`{to}`: {fault:?}");
+        assert_eq!(fault.line, line, "`{to}`: {fault:?}");
+    }
+}
+
+#[test]
+#[expect(clippy::print_stderr, reason = "a test that is skipped must say so")]
+fn files_of_thousands_of_paths_are_read() {
+    let shared =
+        std::env::var_os("LVIS_SHARED").map_or_else(|| "../../shared".into(), PathBuf::from);
+    for (name, annotated) in [
+        ("paths_cornell_100chains.txt", false),
+        ("paths_caustic_100chains.txt", false),
+        ("paths_caustic_100chains_annotated.txt", true),
+    ] {
+        let file = shared.join("paths").join(name);
+        if !file.exists() {
+            eprintln!("skipped: {} is not there", file.display());
+            return;
+        }
+        let dump = read(&file).expect("a dump");
+        assert_eq!((dump.records.len(), dump.annotated), (2000, annotated), "{name}");
+        assert_eq!(dump.warnings, [""; 0], "{name}");
+        assert!(dump.steps.len() >= 2000, "{name}");
+        let stage = Stage::new(dump, None);
+        let (eye, camera) = (stage.camera.origin.as_vec3(), stage.camera);
+        for act in &stage.acts {
+            // The film point is where the last inner vertex is seen.
+            let last = glam::Vec3::from(act.vertices[act.vertices.len() - 2].position) - eye;
+            let [x, y, z] =
+                [camera.right, camera.up, camera.forward].map(|a| a.as_vec3().dot(last));
+            let seen = [
+                0.5 * (1.0 + x / z / camera.tan_x as f32),
+                0.5 * (1.0 - y / z / camera.tan_y as f32),
+            ];
+            let off = (seen[1] - act.header.film[1]).abs();
+            assert!(
+                off < 5e-3,
+                "{name}, path {}: {seen:?} is not {:?}",
+                act.header.id,
+                act.header.film
+            );
+        }
+    }
+}

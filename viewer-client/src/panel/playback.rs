@@ -1,0 +1,128 @@
+//! A file of paths: which step is shown, what became of it, and how to go on.
+
+use egui::{Label, RichText, Sense, Slider, Ui};
+
+use super::Panel;
+use super::widgets::{dot, row};
+use crate::command::{Command, PlayCommand, Switch};
+use crate::dump::{Outcome, Stage, Step};
+use crate::format;
+use crate::playback::Playback;
+use crate::theme;
+use crate::world::World;
+
+/// The controls of a file of paths; blank without one.
+#[derive(Debug)]
+pub(super) struct PlaybackPanel;
+
+impl Panel for PlaybackPanel {
+    fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+        let Some(playback) = world.playback else { return };
+        transport(ui, playback, commands);
+        scrubber(ui, playback, commands);
+        if let Some(step) = playback.step() {
+            describe(ui, playback.stage(), step);
+        }
+        ui.add_space(6.0);
+        tally(ui, playback.stage());
+    }
+}
+
+fn transport(ui: &mut Ui, playback: &Playback, commands: &mut Vec<Command>) {
+    let (position, count) = playback.place();
+    ui.horizontal(|ui| {
+        let mut button = |ui: &mut Ui, label: &str, tip: &str, command| {
+            if ui.button(label).on_hover_text(tip).clicked() {
+                commands.push(Command::Play(command));
+            }
+        };
+        button(ui, "First", "To the first step", PlayCommand::To(0));
+        button(ui, "Back", "One step back", PlayCommand::By(-1));
+        let (label, tip) = if playback.is_playing() {
+            ("Pause", "Stand still (K)")
+        } else {
+            ("Play", "Go on (K)")
+        };
+        button(ui, label, tip, PlayCommand::Run(Switch::Toggle));
+        button(ui, "Step", "One step (N)", PlayCommand::By(1));
+        button(ui, "Accepted", "On to the next accepted step (Shift+N)", PlayCommand::Accepted);
+    });
+    let text = format!("Step {} of {count}", position + 1);
+    ui.label(RichText::new(text).weak());
+}
+
+fn scrubber(ui: &mut Ui, playback: &Playback, commands: &mut Vec<Command>) {
+    let (position, count) = playback.place();
+    let mut there = position;
+    ui.spacing_mut().slider_width = (ui.available_width() - 8.0).max(60.0);
+    let slider = Slider::new(&mut there, 0..=count.saturating_sub(1)).show_value(false);
+    ui.add(slider).on_hover_text("Drag to any step");
+    if there != position {
+        commands.push(Command::Play(PlayCommand::To(u32::try_from(there).unwrap_or(u32::MAX))));
+    }
+    let mut rate = playback.rate();
+    row(ui, "Pace", "Steps a second", |ui| {
+        ui.spacing_mut().slider_width = (ui.available_width() - 96.0).max(40.0);
+        let slider = Slider::new(&mut rate, 0.1..=500.0).logarithmic(true).suffix(" /s");
+        ui.add(slider).on_hover_text("Steps a second");
+    });
+    if rate != playback.rate() {
+        commands.push(Command::Play(PlayCommand::Rate(rate)));
+    }
+}
+
+fn describe(ui: &mut Ui, stage: &Stage, step: &Step) {
+    ui.horizontal(|ui| {
+        let strategy = stage.strategies.iter().position(|name| *name == step.mutation);
+        if let Some(strategy) = strategy {
+            dot(ui, theme::strategy_color(strategy));
+            ui.label(&step.mutation);
+        }
+        let (text, color) = match step.outcome {
+            Outcome::Seed => ("seed of the chain".to_owned(), theme::ACCENT),
+            Outcome::Accepted(Some(a)) => (format!("accepted, a = {a:.4}"), theme::GOOD),
+            Outcome::Accepted(None) => ("accepted".to_owned(), theme::GOOD),
+            Outcome::Rejected(a) => (format!("rejected, a = {a:.4}"), theme::BUSY),
+            Outcome::Failed => ("failed: no proposal".to_owned(), theme::BAD),
+        };
+        ui.label(RichText::new(text).color(color).strong());
+    });
+    let text = format!("Chain {}, step {}, line {}", step.chain, step.number, step.line);
+    ui.label(RichText::new(text).weak());
+    if let Some([x, y]) = step.pixel {
+        row(ui, "Pixel", "Where the proposal meets the film", |ui| {
+            ui.label(RichText::new(format!("{x:.2}  {y:.2}")).monospace())
+        });
+    }
+    if !step.configuration.is_empty() {
+        let tip = "E, C the ends; e on the light, S on a surface, c on the lens; d: cannot be \
+                   connected";
+        row(ui, "Vertices", tip, |ui| {
+            let text = RichText::new(&step.configuration).monospace().small();
+            ui.add(Label::new(text).wrap().sense(Sense::hover()))
+        });
+    }
+}
+
+/// What became of all steps, mutation by mutation.
+fn tally(ui: &mut Ui, stage: &Stage) {
+    if !stage.annotated {
+        let text =
+            "The file tells accepted paths only; one with `#` lines tells rejected steps, too.";
+        ui.add(Label::new(RichText::new(text).weak().small()).wrap());
+        return;
+    }
+    for (index, name) in stage.strategies.iter().enumerate() {
+        let of_name = || stage.steps.iter().filter(|step| step.mutation == *name);
+        let count = |is: fn(Outcome) -> bool| of_name().filter(|step| is(step.outcome)).count();
+        let accepted = count(|o| matches!(o, Outcome::Accepted(_)));
+        let failed = count(|o| o == Outcome::Failed);
+        let all = of_name().count();
+        ui.horizontal(|ui| {
+            dot(ui, theme::strategy_color(index));
+            let share = format::percent(accepted as f64, all as f64);
+            let text = format!("{name}: {share} of {all} accepted, {failed} failed");
+            ui.label(RichText::new(text).small());
+        });
+    }
+}
