@@ -53,8 +53,10 @@ impl Group {
 }
 
 /// The mouse, for the help sheet; [`crate::panel`]'s viewport gives it this meaning.
-pub const MOUSE: [(&str, &str); 5] = [
+pub const MOUSE: [(&str, &str); 7] = [
     ("Click", "select a path; again, the next one there"),
+    ("F2 F3 F4 F5", "a sphere under the cursor: paths that start, end, pass any, pass all"),
+    ("Delete", "remove the chosen sphere"),
     ("Left, middle drag", "turn round the pivot; look about while flying"),
     ("Right, Shift+drag", "shift the view"),
     ("Wheel", "come closer to the point under the cursor"),

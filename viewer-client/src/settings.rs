@@ -1,11 +1,13 @@
 //! What the user has chosen; panels read it, [`crate::command::Command`]s change it.
 
+use common::Filter;
 use glam::{Vec3, Vec4};
 
 use crate::camera::Bounds;
 use crate::command::{
     ClipSide, CloudCommand, ColorMode, ColorScale, FilterCommand, ImageCommand, Layer,
-    LayoutCommand, Marks, PanelName, SceneCommand, Shading, ThemeName, ToneCurve,
+    LayoutCommand, MOST_SELECTORS, Marks, PanelName, SceneCommand, Shading, Sphere, ThemeName,
+    ToneCurve,
 };
 
 /// Every choice.
@@ -173,19 +175,76 @@ impl SceneSettings {
 }
 
 /// Which paths are shown.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FilterSettings {
-    /// The filter; blank for all paths.
+    /// The text that the user wrote; blank for all paths.
     pub text: String,
+    /// Spheres that paths are selected by, too.
+    pub selectors: Vec<Sphere>,
+    /// The selector whose handles are shown.
+    pub chosen: Option<usize>,
+    /// All paths are wanted in spite of the above.
+    pub off: bool,
+    /// What the filter leaves out is wanted instead.
+    pub inverted: bool,
 }
 
 impl FilterSettings {
     /// Follows a command.
     pub fn apply(&mut self, command: &FilterCommand) {
         match command {
+            FilterCommand::Set(text) if text == "true" => self.text.clear(),
             FilterCommand::Set(text) => self.text.clone_from(text),
-            FilterCommand::Clear => self.text.clear(),
+            FilterCommand::Clear => *self = Self::default(),
+            FilterCommand::Enable(switch) => {
+                let mut on = !self.off;
+                switch.apply(&mut on);
+                self.off = !on;
+            }
+            FilterCommand::Invert(switch) => switch.apply(&mut self.inverted),
+            FilterCommand::Add(sphere) => {
+                if self.selectors.len() < MOST_SELECTORS as usize {
+                    self.selectors.push(*sphere);
+                    self.chosen = Some(self.selectors.len() - 1);
+                }
+            }
+            FilterCommand::Move(number, place) => {
+                if let Some(sphere) = self.selectors.get_mut(*number as usize) {
+                    sphere.place = *place;
+                }
+            }
+            FilterCommand::Choose(number) => {
+                let number = *number as usize;
+                self.chosen = (number < self.selectors.len()).then_some(number);
+            }
+            FilterCommand::Delete(number) => {
+                if (*number as usize) < self.selectors.len() {
+                    self.selectors.remove(*number as usize);
+                    self.chosen = None;
+                }
+            }
+            FilterCommand::DeleteAll => {
+                self.selectors.clear();
+                self.chosen = None;
+            }
         }
+    }
+
+    /// The text of everything together, as the daemon gets it; blank for all paths.
+    pub fn wanted(&self) -> String {
+        if self.off {
+            return String::new();
+        }
+        let selectors: Vec<_> = self.selectors.iter().map(|sphere| sphere.selector()).collect();
+        let text = Filter::parse(&self.text).unwrap_or(Filter::Constant(true));
+        let mut parts = vec![Filter::from_selectors(&selectors), text];
+        parts.retain(|part| *part != Filter::Constant(true));
+        let all = match parts.len() {
+            0 => return String::new(),
+            1 => parts.remove(0),
+            _ => Filter::And(parts),
+        };
+        if self.inverted { Filter::Not(Box::new(all)).to_string() } else { all.to_string() }
     }
 }
 

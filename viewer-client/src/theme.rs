@@ -1,6 +1,8 @@
 //! Colours, spacing and type of the interface.
 
+use common::SelectorKind;
 use egui::{Color32, CornerRadius, FontId, Margin, Stroke, TextStyle, Theme, Visuals, vec2};
+use glam::Vec3;
 use shaders::{PALETTE_SIZE, RAMP_SIZE};
 
 /// The colour of things that can be acted upon.
@@ -11,6 +13,25 @@ pub const GOOD: Color32 = Color32::from_rgb(88, 196, 120);
 pub const BUSY: Color32 = Color32::from_rgb(238, 178, 72);
 /// Something is wrong.
 pub const BAD: Color32 = Color32::from_rgb(236, 96, 88);
+/// A kind of selectors: green where paths start, red where they end, yellow for any, white for all.
+pub fn selector_color(kind: SelectorKind) -> Color32 {
+    match kind {
+        SelectorKind::Start => Color32::from_rgb(96, 220, 120),
+        SelectorKind::End => Color32::from_rgb(255, 104, 96),
+        SelectorKind::Any => Color32::from_rgb(255, 214, 80),
+        SelectorKind::All => Color32::from_rgb(236, 240, 245),
+    }
+}
+
+/// The axes' colours, as everywhere: x red, y green, z blue.
+pub fn axis_color(axis: Vec3) -> Color32 {
+    match axis.max_element() {
+        m if m == axis.x => Color32::from_rgb(236, 92, 86),
+        m if m == axis.y => Color32::from_rgb(124, 190, 84),
+        _ => Color32::from_rgb(82, 142, 240),
+    }
+}
+
 /// What stays of the explorer's path.
 pub const EXPLORED: Color32 = Color32::from_rgb(120, 200, 255);
 /// What a proposal replaces.

@@ -3,7 +3,7 @@
 mod playing;
 
 use std::collections::VecDeque;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use egui_wgpu::RenderState;
 
@@ -35,6 +35,9 @@ const UPLOAD_POINTS: usize = 16 * PAGE_POINTS;
 /// Batches that one frame takes in at most; the rest waits for the next.
 const BATCHES_PER_FRAME: usize = 128;
 
+/// A filter that the user's hand is changing is sent when the hand has rested so long.
+const HAND: Duration = Duration::from_millis(120);
+
 /// Everything behind the window.
 #[derive(Debug)]
 pub struct Viewer {
@@ -61,6 +64,9 @@ pub struct Viewer {
     orders: u32,
     /// Filters set so far: the number of the last one.
     filters: u32,
+    /// The filter that was asked for last, and when the user changed it since.
+    asked_for: String,
+    filter_changed: Option<Instant>,
     /// The path that is looked at, and where the user pointed to select it.
     selection: Option<Selection>,
     pointed: Option<Aim>,
@@ -101,6 +107,8 @@ impl Viewer {
             script: Vec::new(),
             orders: 0,
             filters: 0,
+            asked_for: String::new(),
+            filter_changed: None,
             selection: None,
             pointed: None,
             history: History::default(),
@@ -125,7 +133,7 @@ impl Viewer {
     /// Takes over a connection.
     pub fn set_link(&mut self, link: Link) {
         self.link = Some(link);
-        if !self.settings.filter.text.is_empty() {
+        if !self.settings.filter.wanted().is_empty() {
             self.ask_for_paths();
         }
     }
@@ -180,7 +188,8 @@ impl Viewer {
     /// True when scene, image, statistics and all paths that have come are taken in.
     pub fn is_settled(&self) -> bool {
         let whole = self.model.is_some() && self.darkroom.film.size() != [0, 0];
-        let idle = self.script.is_empty() && !self.darkroom.is_busy();
+        let idle =
+            self.script.is_empty() && self.filter_changed.is_none() && !self.darkroom.is_busy();
         whole && idle && self.waiting.is_empty() && self.status.statistics.is_some()
     }
 
@@ -203,6 +212,12 @@ impl Viewer {
                 self.store.skip(&batch);
             } else {
                 self.store.append(&batch);
+            }
+        }
+        if self.filter_changed.is_some_and(|at| at.elapsed() >= HAND) {
+            self.filter_changed = None;
+            if self.settings.filter.wanted() != self.asked_for {
+                self.ask_for_paths();
             }
         }
         let counts = self.store.counts();
@@ -323,13 +338,11 @@ impl Viewer {
 
     /// Goes back, or forth, to other settings.
     fn restore(&mut self, settings: Settings) {
-        let left = std::mem::replace(&mut self.settings, settings);
+        self.settings = settings;
         self.stale.aids = true;
         self.store.set_budget(budget_bytes(self.settings.cloud.budget_mib));
         self.store.set_drawn(drawn(self.settings.cloud.dim));
-        if left.filter != self.settings.filter {
-            self.ask_for_paths();
-        }
+        self.filter_changed = Some(Instant::now());
     }
 
     fn carry_out(&mut self, command: Command) {
@@ -352,7 +365,7 @@ impl Viewer {
             }
             Command::Filter(command) => {
                 self.settings.filter.apply(&command);
-                self.ask_for_paths();
+                self.filter_changed = Some(Instant::now());
             }
             Command::Image(command) => {
                 self.settings.image.apply(&command);
@@ -426,7 +439,8 @@ impl Viewer {
     fn ask_for_paths(&mut self) {
         self.store.clear();
         self.filters += 1;
-        let text = self.settings.filter.text.clone();
+        let text = self.settings.filter.wanted();
+        self.asked_for.clone_from(&text);
         if let Some(link) = &self.link
             && !link.set_filter(self.filters, text)
         {
@@ -531,12 +545,15 @@ impl Viewer {
                 ctx.request_repaint_after(left);
             }
         }
+        if self.filter_changed.is_some() {
+            ctx.request_repaint_after(HAND);
+        }
         if !self.waiting.is_empty() {
             ctx.request_repaint();
         } else if self.darkroom.is_busy() {
-            ctx.request_repaint_after(std::time::Duration::from_millis(50));
+            ctx.request_repaint_after(Duration::from_millis(50));
         } else if matches!(self.status.link, LinkState::Disconnected { .. }) {
-            ctx.request_repaint_after(std::time::Duration::from_millis(250));
+            ctx.request_repaint_after(Duration::from_millis(250));
         }
     }
 

@@ -26,6 +26,8 @@ pub enum LayoutCommand {
 pub enum PanelName {
     /// How paths are drawn.
     Cloud,
+    /// Which paths are shown.
+    Filter,
     /// How the scene is drawn.
     Scene,
     /// The progressive image.
@@ -46,6 +48,7 @@ impl PanelName {
     /// All of them, from the left of the window to the right.
     pub const ALL: [Self; 8] = [
         Self::Cloud,
+        Self::Filter,
         Self::Scene,
         Self::Image,
         Self::Path,
@@ -59,6 +62,7 @@ impl PanelName {
     pub fn title(self) -> &'static str {
         match self {
             Self::Cloud => "Paths",
+            Self::Filter => "Filter",
             Self::Scene => "Scene",
             Self::Image => "Image",
             Self::Statistics => "Statistics",
@@ -74,6 +78,7 @@ impl fmt::Display for PanelName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Cloud => "cloud",
+            Self::Filter => "filter",
             Self::Scene => "scene",
             Self::Image => "image",
             Self::Statistics => "statistics",
@@ -114,7 +119,8 @@ impl fmt::Display for ThemeName {
 pub(super) const FORMS: &[Form] = &[
     (
         "panel NAME on|off|toggle",
-        "cloud, scene, image, path, explorer, playback, statistics, diagnostics: open or close it",
+        "cloud, filter, scene, image, path, explorer, playback, statistics, diagnostics: open or \
+         close it",
     ),
     ("theme dark|light|toggle", "colours of the interface"),
     ("help on|off|toggle", "the sheet of keys"),

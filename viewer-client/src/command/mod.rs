@@ -19,7 +19,7 @@ mod words;
 pub use camera::{CameraCommand, Place, Side};
 pub use cloud::{CloudCommand, ColorMode, ColorScale, Marks};
 pub use desk::DeskCommand;
-pub use filter::FilterCommand;
+pub use filter::{FilterCommand, MOST_SELECTORS, Sphere, kind_name};
 pub use image::{ImageCommand, Layer, ToneCurve};
 pub use layout::{LayoutCommand, PanelName, ThemeName};
 pub use path::{PathCommand, VertexStep};
@@ -156,7 +156,9 @@ mod tests {
         cloud dots 1.5\ncloud marks ends\ncloud scale log\ncloud cue 0.5\ncloud dim 0.25\n\
         scene shading wireframe\nscene opacity 0.25\nscene cutaway off\nscene camera on\n\
         scene grid toggle\nscene clip -x\nscene cut 0.25\n\
-        filter set film in rect(0.25, 0, 1, 0.5)\nfilter clear\n\
+        filter set film in rect(0.25, 0, 1, 0.5)\nfilter clear\nfilter enable off\nfilter invert toggle\n\
+        filter add start 1 2.5 -3 0.25\nfilter move 1 0 0 1 2\nfilter choose 0\nfilter delete 2\n\
+        filter bare\n\
         image exposure -1.5\nimage auto\nimage zoom 2\nimage look 0.25 0.75\nimage fit\n\
         image show difference\nimage tone gamma\nimage gamma 1.8\nimage reference a b.exr\n\
         image forget\nimage save out.png\nimage tev 127.0.0.1:14158\n\

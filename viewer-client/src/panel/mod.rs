@@ -7,6 +7,7 @@ mod cloud;
 mod connect;
 mod diagnostics;
 mod explorer;
+mod filter;
 mod help;
 mod hint;
 mod image;
@@ -60,6 +61,7 @@ pub fn all() -> Vec<(Slot, Box<dyn Panel>)> {
         (Slot::Top, Box::new(menu::Menu::default())),
         (Slot::Bottom, Box::new(status::StatusBar)),
         (Slot::Left(PanelName::Cloud), Box::new(cloud::Cloud)),
+        (Slot::Left(PanelName::Filter), Box::new(filter::FilterPanel::default())),
         (Slot::Left(PanelName::Scene), Box::new(scene::Scene)),
         (Slot::Right(PanelName::Image), Box::new(image::ImagePanel::default())),
         (Slot::Right(PanelName::Path), Box::new(path::PathPanel)),

@@ -7,6 +7,7 @@ mod legend;
 mod overlay;
 mod picture;
 mod project;
+mod selectors;
 
 use egui::{Role, Sense, Ui, WidgetInfo};
 
@@ -28,12 +29,14 @@ impl Panel for Viewport {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Viewport"));
         let projector = Projector::new(world.camera.lens(rect.aspect_ratio()), rect);
-        gesture::read(ui, &response, world, commands);
-        if response.clicked()
-            && let Some(place) = response.interact_pointer_pos()
-        {
-            let aim = projector.aim(place, TOLERANCE);
-            commands.push(Command::Path(PathCommand::Pick(aim)));
+        if !selectors::interact(ui, (&response, &projector), world, commands) {
+            gesture::read(ui, &response, world, commands);
+            if response.clicked()
+                && let Some(place) = response.interact_pointer_pos()
+            {
+                let aim = projector.aim(place, TOLERANCE);
+                commands.push(Command::Path(PathCommand::Pick(aim)));
+            }
         }
 
         let pixels = rect.size() * ui.pixels_per_point();

@@ -6,7 +6,7 @@ use egui::{
 use glam::Vec3;
 
 use super::project::Projector;
-use super::{ghost, highlight};
+use super::{ghost, highlight, selectors};
 use crate::format;
 use crate::status::LinkState;
 use crate::theme;
@@ -28,6 +28,7 @@ pub(super) fn paint(ui: &Ui, projector: &Projector, rect: Rect, world: &World<'_
         nothing_yet(&painter, rect, world, ink);
         return;
     }
+    selectors::paint(&painter, projector, world);
     ghost::paint(&painter, projector, rect, world);
     highlight::paint(&painter, projector, world, ink);
     axes(&painter, rect, world, ink);
@@ -88,9 +89,9 @@ fn axes(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
     let lens = world.camera.lens(1.0);
     let centre = rect.left_bottom() + vec2(MARGIN + 26.0, -MARGIN - 26.0);
     let mut arms = [
-        (Vec3::X, "x", Color32::from_rgb(236, 92, 86)),
-        (Vec3::Y, "y", Color32::from_rgb(124, 190, 84)),
-        (Vec3::Z, "z", Color32::from_rgb(82, 142, 240)),
+        (Vec3::X, "x", theme::axis_color(Vec3::X)),
+        (Vec3::Y, "y", theme::axis_color(Vec3::Y)),
+        (Vec3::Z, "z", theme::axis_color(Vec3::Z)),
     ];
     // The farthest first, so that nearer arms lie on top.
     arms.sort_by(|a, b| b.0.dot(lens.forward).total_cmp(&a.0.dot(lens.forward)));
