@@ -77,11 +77,14 @@ fn view(camera: &ViewCamera, settings: &Settings) -> Vec<Command> {
     if image.chosen {
         commands.push(Command::Image(ImageCommand::Exposure(image.exposure)));
     }
-    commands.push(Command::Filter(if filter.text.is_empty() {
-        FilterCommand::Clear
-    } else {
-        FilterCommand::Set(filter.text.clone())
-    }));
+    let mut wanted = vec![FilterCommand::Clear];
+    if !filter.text.is_empty() {
+        wanted.push(FilterCommand::Set(filter.text.clone()));
+    }
+    wanted.extend(filter.selectors.iter().map(|sphere| FilterCommand::Add(*sphere)));
+    wanted.extend(filter.inverted.then_some(FilterCommand::Invert(Switch::On)));
+    wanted.extend(filter.off.then_some(FilterCommand::Enable(Switch::Off)));
+    commands.extend(wanted.into_iter().map(Command::Filter));
     commands
 }
 
@@ -128,7 +131,7 @@ fn only_looks(command: &Command) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::Layer;
+    use crate::command::{Layer, Sphere};
 
     #[test]
     fn a_link_restores_the_view() {
@@ -136,6 +139,9 @@ mod tests {
         settings.filter.text = "any on material \"a; b\" and film in rect(0.25, 0, 1, 0.5)".into();
         settings.image.layer = Layer::Dwell;
         settings.scene.opacity = 0.25;
+        let sphere = Sphere { kind: common::SelectorKind::End, place: [0.5, 1.0, -2.0, 0.25] };
+        settings.filter.apply(&FilterCommand::Add(sphere));
+        settings.filter.apply(&FilterCommand::Invert(Switch::On));
         let mut camera = ViewCamera::default();
         camera.apply(CameraCommand::Orbit(33.5, -12.25));
         // A semicolon in a name would end the command.

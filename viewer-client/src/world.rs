@@ -58,6 +58,7 @@ impl World<'_> {
         match panel {
             PanelName::Playback => self.playback.is_some(),
             PanelName::Explorer
+            | PanelName::Filter
             | PanelName::Statistics
             | PanelName::Diagnostics
             | PanelName::Image => self.playback.is_none(),

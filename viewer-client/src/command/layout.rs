@@ -46,7 +46,7 @@ pub enum PanelName {
 
 impl PanelName {
     /// All of them, from the left of the window to the right.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Cloud,
         Self::Filter,
         Self::Scene,

@@ -120,7 +120,7 @@ fn region_line(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
         if ui.button("All").on_hover_text("Paths to the whole image").clicked() {
             let text = region::with_region(&world.settings.filter.text, None);
             let command =
-                if text.is_empty() { FilterCommand::Clear } else { FilterCommand::Set(text) };
+                FilterCommand::Set(if text.is_empty() { "true".to_owned() } else { text });
             commands.push(Command::Filter(command));
         }
     });
