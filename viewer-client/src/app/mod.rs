@@ -1,6 +1,8 @@
 //! The viewer itself: owns what came, what the user chose, and what is on the graphics card.
 
+mod beyond;
 mod playing;
+mod selecting;
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -8,10 +10,8 @@ use std::time::{Duration, Instant};
 use egui_wgpu::RenderState;
 
 use crate::camera::{Bounds, ViewCamera};
-use crate::command::{
-    CameraCommand, CloudCommand, Command, DeskCommand, ImageCommand, PathCommand, VertexStep,
-};
-use crate::connection::{Delivery, FocusNews, Link, Peer};
+use crate::command::{CameraCommand, CloudCommand, Command, ImageCommand, PathCommand};
+use crate::connection::{Delivery, FocusNews, Link};
 use crate::darkroom::Darkroom;
 use crate::desk::{Connect, Desk};
 use crate::gpu::{Quality, Renderer, Uploaded};
@@ -20,11 +20,10 @@ use crate::history::History;
 use crate::keys;
 use crate::model::{Model, corners, drawing_aids};
 use crate::panel::{self, NOTICE_TIME, Panel, Slot};
-use crate::pick::{self, Aim, Pickable};
+use crate::pick::Aim;
 use crate::playback::Playback;
 use crate::selection::Selection;
 use crate::settings::Settings;
-use crate::share;
 use crate::status::{LinkState, Status};
 use crate::store::{Drawn, PAGE_POINTS, Store};
 use crate::theme;
@@ -67,6 +66,8 @@ pub struct Viewer {
     /// The filter that was asked for last, and when the user changed it since.
     asked_for: String,
     filter_changed: Option<Instant>,
+    /// The filter that the daemon last said it follows.
+    filter_in_force: u32,
     /// The path that is looked at, and where the user pointed to select it.
     selection: Option<Selection>,
     pointed: Option<Aim>,
@@ -109,6 +110,7 @@ impl Viewer {
             filters: 0,
             asked_for: String::new(),
             filter_changed: None,
+            filter_in_force: 0,
             selection: None,
             pointed: None,
             history: History::default(),
@@ -208,6 +210,9 @@ impl Viewer {
         let time = self.started.elapsed().as_secs_f64();
         for _ in 0..BATCHES_PER_FRAME {
             let Some(batch) = self.waiting.pop_front() else { break };
+            if batch.origin().revision < self.filter_in_force {
+                continue;
+            }
             if self.settings.cloud.frozen {
                 self.store.skip(&batch);
             } else {
@@ -276,6 +281,10 @@ impl Viewer {
         if let Some(reply) = delivery.filter {
             if let Some(error) = &reply.error {
                 self.status.say(Err(format!("The filter is refused: {error}")));
+            } else {
+                // What came before was chosen by another filter.
+                self.filter_in_force = reply.revision;
+                self.store.clear();
             }
             self.status.filter = Some(reply);
         }
@@ -376,6 +385,7 @@ impl Viewer {
             Command::Order(order) => self.send(order),
             Command::Path(PathCommand::Pick(aim)) => self.pick(aim),
             Command::Path(PathCommand::Deselect) => self.selection = None,
+            Command::Path(PathCommand::Stay(rank)) => self.select_stay(rank),
             Command::Path(PathCommand::Vertex(step)) => self.look_at_vertex(step),
             Command::Play(command) => self.play(command),
             Command::Scrub(number) => self.scrub = number,
@@ -387,106 +397,6 @@ impl Viewer {
                 }
             }
             Command::Quit => self.closing = true,
-        }
-    }
-
-    fn go_beyond(&mut self, command: DeskCommand) {
-        match command {
-            DeskCommand::Connect(place) => {
-                if let Err(problem) = self.connect(&place) {
-                    self.status.say(Err(problem));
-                }
-            }
-            DeskCommand::Share => {
-                let link = share::link(&self.status.address, &self.camera, &self.settings);
-                self.status.say(Ok(format!("Copied {link}")));
-                self.desk.copy(link);
-            }
-            DeskCommand::Screenshot(file) if self.desk.connect.is_some() => {
-                self.desk.photograph(&file);
-            }
-            DeskCommand::Screenshot(_) => {
-                let remedy = "There is no window; use --headless --screenshot-to OUT.png.";
-                self.status.say(Err(remedy.to_owned()));
-            }
-        }
-    }
-
-    /// Leaves the daemon, and watches the one at HOST:PORT or where a link leads.
-    fn connect(&mut self, place: &str) -> Result<(), String> {
-        let (address, commands) = if place.starts_with(share::SCHEME) {
-            let shared = share::read(place).map_err(|error| error.to_string())?;
-            (shared.address, shared.commands)
-        } else {
-            (place.to_owned(), Vec::new())
-        };
-        let connect = self.desk.connect.as_ref().ok_or("There is no window to connect for.")?;
-        let link = connect(Peer::open(address.clone()))
-            .map_err(|error| format!("Cannot connect to {address}: {error}"))?;
-        self.link = None;
-        self.status = Status::new(address, false);
-        self.scene_hash.clear();
-        self.store.clear();
-        self.darkroom.film.clear();
-        self.model = None;
-        self.stale = Stale { surfaces: true, aids: true };
-        self.set_link(link);
-        self.run_script(commands);
-        Ok(())
-    }
-
-    /// Tells the daemon which paths to send from now on; those before were others.
-    fn ask_for_paths(&mut self) {
-        self.store.clear();
-        self.filters += 1;
-        let text = self.settings.filter.wanted();
-        self.asked_for.clone_from(&text);
-        if let Some(link) = &self.link
-            && !link.set_filter(self.filters, text)
-        {
-            let problem = "The filter was not sent: the daemon is busy; set it again.";
-            self.status.say(Err(problem.to_owned()));
-        }
-    }
-
-    /// Selects the path under the cursor; where that is the selected one, the next one there.
-    fn pick(&mut self, aim: Aim) {
-        let lens = self.camera.lens(1.0);
-        let scene = &self.settings.scene;
-        let clip = scene.clip_plane(self.camera.bounds());
-        let mesh = self.model.as_ref().map(|model| &model.mesh).filter(|_| scene.covers());
-        let surface = mesh
-            .and_then(|mesh| pick::surface_at(mesh, &lens, aim.at, !scene.cutaway, clip))
-            .map(|(depth, _)| depth);
-        let newest = Pickable { newest: self.settings.cloud.shown as usize, clip };
-        let hits = pick::paths_at(&self.store, &lens, aim, newest, surface);
-        let again = self.pointed.is_some_and(|before| before.is_near(aim));
-        let selected = self.selection.as_ref().filter(|_| again).map(|s| s.header.id);
-        let found: Vec<Selection> = hits
-            .iter()
-            .filter_map(|hit| {
-                let page = self.store.page(hit.page)?;
-                let path = page.paths().get(hit.index)?;
-                Some(Selection::new(path.header, page.vertices(path).to_vec()))
-            })
-            .collect();
-        let last = found.iter().position(|s| Some(s.header.id) == selected);
-        let next = last.map_or(0, |index| (index + 1) % found.len());
-        let count = found.len();
-        self.selection = found.into_iter().nth(next);
-        if let Some(selection) = &mut self.selection {
-            selection.place = (next + 1, count);
-        }
-        self.pointed = Some(aim);
-    }
-
-    fn look_at_vertex(&mut self, step: VertexStep) {
-        let Some(selection) = &mut self.selection else { return };
-        selection.go(step);
-        let vertex = selection.vertex.and_then(|index| selection.vertices.get(index));
-        if let Some(vertex) = vertex {
-            let near = 0.4 * self.camera.bounds().radius();
-            self.camera.apply(CameraCommand::Focus(vertex.position, near));
         }
     }
 

@@ -11,6 +11,8 @@ use crate::pick::Aim;
 pub enum PathCommand {
     /// Selects the path under the cursor; again, the next one there.
     Pick(Aim),
+    /// Selects the path at which a chain stayed longest, or the next in that order.
+    Stay(u8),
     /// Selects none.
     Deselect,
     /// Brings a vertex of it into the middle of the view.
@@ -43,6 +45,7 @@ pub(super) const FORMS: &[Form] = &[
         "path pick RIGHT UP REACH",
         "select the path at tangents from the view direction; again, the next one there",
     ),
+    ("path stay RANK", "select a path at which a chain stayed long; the longest stay is 0"),
     ("path none", "select no path"),
     ("path vertex next|previous|INDEX", "look at a vertex of the selected path"),
 ];
@@ -51,6 +54,7 @@ impl fmt::Display for PathCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Pick(Aim { at: [x, y], reach }) => write!(f, "pick {x} {y} {reach}"),
+            Self::Stay(rank) => write!(f, "stay {rank}"),
             Self::Deselect => write!(f, "none"),
             Self::Vertex(step) => write!(f, "vertex {step}"),
         }
@@ -64,6 +68,7 @@ pub(super) fn parse(words: &mut Words<'_>) -> Result<PathCommand, CommandError> 
             at: [words.number("RIGHT", TANGENT)?, words.number("UP", TANGENT)?],
             reach: words.number("REACH", 0.0..=1.0)?,
         }),
+        "stay" => PathCommand::Stay(words.count("RANK", 0..=255)? as u8),
         "none" => PathCommand::Deselect,
         "vertex" => PathCommand::Vertex(match words.peek() {
             Some("next") => words.next("vertex").map(|_| VertexStep::Next)?,

@@ -214,7 +214,7 @@ fn a_pixel_or_a_rectangle_of_the_image_becomes_the_filter() {
     };
     harness.hover_at(at(10.5, 5.5));
     harness.run();
-    assert!(shows(&harness, "10, 5") && shows(&harness, "0.50000"), "the values of a pixel");
+    assert!(shows(&harness, "10, 5") && shows(&harness, "0.5000"), "the values of a pixel");
     harness.drag_at(at(10.5, 5.5));
     harness.run();
     harness.drop_at(at(10.5, 5.5));
@@ -290,14 +290,15 @@ fn chains_that_disagree_raise_an_alarm_that_leads_there() {
     ] {
         assert!(shows(&harness, text), "`{text}` is missing");
     }
-    for label in ["Show where", "Paths to the worst", "Acceptance", "Explore"] {
+    for label in ["Show where", "Paths to the worst", "Acceptance", "Explore", "Show"] {
         harness.get_by_label(label).click();
         harness.run();
     }
     let said = harness.state().said.as_slice();
-    let [show, Command::Filter(crate::command::FilterCommand::Set(text)), map, explore] = said
+    let [show, Command::Filter(crate::command::FilterCommand::Set(text)), map, explore, show_path] =
+        said
     else {
-        panic!("four clicks, not {said:?}");
+        panic!("five clicks, not {said:?}");
     };
     let layer = |layer| Command::Image(ImageCommand::Show(layer));
     assert_eq!(*show, layer(crate::command::Layer::Disagreement), "the map");
@@ -305,6 +306,7 @@ fn chains_that_disagree_raise_an_alarm_that_leads_there() {
     let [u0, v0, ..] = crate::region::region_of(text).expect("a rectangle");
     assert!((u0 - 2.0 / 40.0).abs() < 1e-9 && (v0 - 4.0 / 30.0).abs() < 1e-9, "{text}");
     assert_eq!(explore.to_string(), "explorer seed 0.0.0", "the path where a chain stayed");
+    assert_eq!(show_path.to_string(), "path stay 0", "and the same path in the view");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use common::{Diagnostics, ExplorerCommand, Order, PathHeader, PathId, Seed};
 use egui::{Grid, RichText, Ui};
 
-use crate::command::Command;
+use crate::command::{Command, PathCommand};
 use crate::format;
 use crate::store::class_name;
 use crate::world::World;
@@ -19,7 +19,7 @@ pub(super) fn show(
         ui.label("None yet.");
         return;
     };
-    Grid::new("stays").num_columns(5).spacing([10.0, 3.0]).show(ui, |ui| {
+    Grid::new("stays").num_columns(6).spacing([8.0, 3.0]).show(ui, |ui| {
         for (title, tip) in [
             ("steps", "How long a chain stayed, every proposal rejected or failed"),
             ("path", "Light, specular, diffuse, eye; from the light"),
@@ -30,6 +30,7 @@ pub(super) fn show(
         }
         ui.end_row();
         let mut reader = batch.reader();
+        let mut rank = 0;
         while let Some(path) = reader.next() {
             let header = path.header;
             ui.label(RichText::new(format::count(f64::from(header.dwell))).monospace());
@@ -38,14 +39,19 @@ pub(super) fn show(
             let seed = header.strategy == PathHeader::NO_STRATEGY;
             ui.label(if seed { "the seed" } else { name });
             ui.label(RichText::new(header.id.chain.0.to_string()).monospace());
-            jump(ui, header.id, commands);
+            jump(ui, rank, header.id, commands);
             ui.end_row();
+            rank += 1;
         }
     });
 }
 
-/// Makes the path the explorer's, to see what becomes of its proposals.
-fn jump(ui: &mut Ui, id: PathId, commands: &mut Vec<Command>) {
+/// Selects the path, or makes it the explorer's, to see what becomes of its proposals.
+fn jump(ui: &mut Ui, rank: u8, id: PathId, commands: &mut Vec<Command>) {
+    if ui.small_button("Show").on_hover_text("Selects the path, in the view and in Path").clicked()
+    {
+        commands.push(Command::Path(PathCommand::Stay(rank)));
+    }
     let tip = "Watch proposals from this path: seeds the explorer with it";
     if ui.small_button("Explore").on_hover_text(tip).clicked() {
         let seed = ExplorerCommand::Seed(Seed::Path(id));

@@ -7,8 +7,8 @@ use crate::format;
 use crate::imaging;
 use crate::world::World;
 
-/// Letters of a value: a sign, five digits, a point and an exponent.
-const DIGITS: usize = 9;
+/// Letters of a value: a sign, digits, a point and an exponent.
+const DIGITS: usize = 8;
 
 /// Shows the values of a pixel, or how to get at them.
 pub(super) fn show(ui: &mut Ui, world: &World<'_>, hovered: Option<[usize; 2]>) {
@@ -26,7 +26,7 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, hovered: Option<[usize; 2]>) 
         return;
     };
     let reference = world.reference.filter(|r| r.fits(world.film)).and_then(|r| r.pixel(x, y));
-    Grid::new("readout").num_columns(5).spacing([8.0, 3.0]).show(ui, |ui| {
+    Grid::new("readout").num_columns(5).spacing([6.0, 3.0]).show(ui, |ui| {
         ui.label(RichText::new(format!("{x}, {y}")).small().weak());
         for (name, color) in channels(ui) {
             ui.label(RichText::new(format!("{name:>DIGITS$}")).monospace().color(color));
@@ -70,9 +70,9 @@ fn line(ui: &mut Ui, name: &str, rgb: Rgb) {
     ui.label(RichText::new(name).small().weak());
     for value in [rgb.r, rgb.g, rgb.b, rgb.luminance()] {
         let digits = if value == 0.0 || (1e-3..1e4).contains(&value.abs()) {
-            format!("{value:.5}")
+            format!("{value:.4}")
         } else {
-            format!("{value:.3e}")
+            format!("{value:.2e}")
         };
         ui.label(RichText::new(format!("{digits:>DIGITS$}")).monospace());
     }
