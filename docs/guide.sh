@@ -26,14 +26,14 @@ look() {
     || { cat "$work/log" >&2; return 1; }
 }
 
-# shot NAME SCENE SIZE CROP SECONDS, with the commands on standard input. CROP is a geometry of
-# ImageMagick, or `all`.
+# shot NAME SCENE SIZE CROP PATHS, with the commands on standard input. CROP is a geometry of
+# ImageMagick from the upper right, or `all`; so many paths come before the picture is taken.
 shot() {
-  local name=$1 scene=$2 size=$3 crop=$4 seconds=$5
+  local name=$1 scene=$2 size=$3 crop=$4 paths=$5
   cat >"$work/script"
-  look --scene "$scene" --size "$size" --wait "$seconds" --run script
+  look --scene "$scene" --size "$size" --wait-paths "$paths" --run script
   local cut=()
-  [[ $crop == all ]] || cut=(-crop "$crop" +repage)
+  [[ $crop == all ]] || cut=(-gravity NorthEast -crop "$crop" +repage -gravity None)
   local colors
   for colors in 192 96 48 24; do
     convert "$work/shot.png" "${cut[@]}" -dither None -colors "$colors" -strip \
@@ -43,71 +43,97 @@ shot() {
   echo "$FOLDER/$name.png: $(stat -c %s "$FOLDER/$name.png") bytes"
 }
 
-shot window caustic 1280x720 all 6 <<'EOF'
+shot window caustic 1280x720 all 60000 <<'EOF'
+panel path off
+panel explorer off
 panel diagnostics off
 cloud shown 1200
 image fit
 EOF
 
-shot hint cornell 1280x720 760x420+250+36 4 <<'EOF'
+shot hint cornell 1280x720 760x420+345+36 20000 <<'EOF'
+panel path off
+panel explorer off
 hint on
 cloud shown 400
 EOF
 
-shot paths caustic 1280x720 932x720+0+0 6 <<'EOF'
+shot paths caustic 1280x720 932x720+350+0 60000 <<'EOF'
+panel path off
+panel explorer off
 cloud color strategy
 cloud shown 700
 scene opacity 0.4
 EOF
 
-shot image cornell 1280x900 352x640+928+34 10 <<'EOF'
+shot image cornell 1280x900 372x640+0+34 4000 <<'EOF'
+panel path off
+panel explorer off
 filter set film in rect(0.3, 0.3, 0.6, 0.5)
 EOF
 
-shot pixels cornell 1280x720 all 8 <<'EOF'
+shot pixels cornell 1280x720 all 1500 <<'EOF'
+panel path off
+panel explorer off
 panel diagnostics off
 panel statistics off
 filter set film in rect(0.72, 0.78, 0.86, 0.9)
 cloud shown 800
 EOF
 
-shot false-colour caustic 1280x900 352x640+928+34 10 <<'EOF'
+shot false-colour caustic 1280x900 372x640+0+34 100000 <<'EOF'
+panel path off
+panel explorer off
 image tone false
 EOF
 
 # The first picture of a scene, as the reference of a later one.
 echo "image save short.exr" >"$work/save"
-look --scene cornell --wait 6 --run save
-shot compare cornell 1280x900 352x760+928+34 12 <<'EOF'
+look --scene cornell --wait-paths 20000 --run save
+shot compare cornell 1280x900 372x760+0+34 100000 <<'EOF'
+panel path off
+panel explorer off
 image reference short.exr
 image exposure 1
 EOF
 
-shot chains door 1280x1080 352x1000+928+34 25 <<'EOF'
+shot chains door 1280x1080 372x1000+0+34 150000 <<'EOF'
+panel path off
+panel explorer off
 panel image off
 panel statistics off
 EOF
 
-shot map-dwell door 1280x900 352x640+928+34 20 <<'EOF'
+shot map-dwell door 1280x900 372x640+0+34 150000 <<'EOF'
+panel path off
+panel explorer off
 image show dwell
 EOF
 
-shot map-disagreement door 1280x900 352x640+928+34 20 <<'EOF'
+shot map-disagreement door 1280x900 372x640+0+34 150000 <<'EOF'
+panel path off
+panel explorer off
 image show disagreement
 EOF
 
-shot statistics caustic 1280x720 352x420+928+34 12 <<'EOF'
+shot statistics caustic 1280x720 372x420+0+34 60000 <<'EOF'
+panel path off
+panel explorer off
 panel image off
 panel diagnostics off
 EOF
 
-shot light door 1280x720 all 16 <<'EOF'
+shot light door 1280x720 all 40000 <<'EOF'
+panel path off
+panel explorer off
 theme light
 cloud color class
 panel diagnostics off
 EOF
 
-shot scaled caustic 1600x900 all 6 <<'EOF'
+shot scaled caustic 1600x900 all 40000 <<'EOF'
+panel path off
+panel explorer off
 scale 150
 panel diagnostics off
 panel scene off
