@@ -19,12 +19,11 @@ pub(super) fn show(
         ui.label("None yet.");
         return;
     };
-    Grid::new("stays").num_columns(6).spacing([8.0, 3.0]).show(ui, |ui| {
+    Grid::new("stays").num_columns(5).spacing([8.0, 3.0]).show(ui, |ui| {
         for (title, tip) in [
             ("steps", "How long a chain stayed, every proposal rejected or failed"),
             ("path", "Light, specular, diffuse, eye; from the light"),
             ("made by", "The strategy that led there"),
-            ("chain", "Which chain"),
         ] {
             ui.label(RichText::new(title).small().weak()).on_hover_text(tip);
         }
@@ -37,8 +36,8 @@ pub(super) fn show(
             ui.label(RichText::new(class_name(path.vertices)).monospace());
             let name = world.strategy_name(usize::from(header.strategy.0));
             let seed = header.strategy == PathHeader::NO_STRATEGY;
-            ui.label(if seed { "the seed" } else { name });
-            ui.label(RichText::new(header.id.chain.0.to_string()).monospace());
+            ui.label(if seed { "the seed" } else { name })
+                .on_hover_text(format!("Path {} of chain {}", header.id, header.id.chain.0));
             jump(ui, rank, header.id, commands);
             ui.end_row();
             rank += 1;
