@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use common::Diagnostics;
+use common::{Diagnostics, FilterCounts};
 
 use crate::camera::ViewCamera;
 use crate::command::PanelName;
@@ -41,6 +41,8 @@ pub struct World<'a> {
     pub recent: &'a [String],
     /// The file of paths that is played, if one is.
     pub playback: Option<&'a Playback>,
+    /// What the filter wants of it.
+    pub counted: Option<&'a FilterCounts>,
     /// The scene, once it has come.
     pub model: Option<&'a Model>,
     /// When the frame began.
@@ -58,11 +60,10 @@ impl World<'_> {
         match panel {
             PanelName::Playback => self.playback.is_some(),
             PanelName::Explorer
-            | PanelName::Filter
             | PanelName::Statistics
             | PanelName::Diagnostics
             | PanelName::Image => self.playback.is_none(),
-            PanelName::Cloud | PanelName::Scene | PanelName::Path => true,
+            PanelName::Filter | PanelName::Cloud | PanelName::Scene | PanelName::Path => true,
         }
     }
 

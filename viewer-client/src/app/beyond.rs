@@ -63,6 +63,8 @@ impl Viewer {
 
     /// Tells the daemon which paths to send from now on; those before were others.
     pub(super) fn ask_for_paths(&mut self) {
+        // Until the daemon answers, what is held shows what the filter does.
+        self.judge();
         self.filters += 1;
         let text = self.settings.filter.wanted();
         self.asked_for.clone_from(&text);

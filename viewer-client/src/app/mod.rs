@@ -1,6 +1,7 @@
 //! The viewer itself: owns what came, what the user chose, and what is on the graphics card.
 
 mod beyond;
+mod filtering;
 mod playing;
 mod selecting;
 
@@ -72,6 +73,8 @@ pub struct Viewer {
     selection: Option<Selection>,
     pointed: Option<Aim>,
     history: History<Settings>,
+    /// What the filter wants of a file of paths.
+    counted: Option<common::FilterCounts>,
     /// A file of paths in the place of a daemon.
     playback: Option<Playback>,
     /// Number of the explorer's step that is shown; the newest without.
@@ -114,6 +117,7 @@ impl Viewer {
             selection: None,
             pointed: None,
             history: History::default(),
+            counted: None,
             playback: None,
             scrub: None,
         }
@@ -314,6 +318,7 @@ impl Viewer {
             self.camera.set_scene(model.bounds, camera);
         }
         self.model = model;
+        self.judge();
         self.go_on();
     }
 
@@ -375,6 +380,10 @@ impl Viewer {
             Command::Filter(command) => {
                 self.settings.filter.apply(&command);
                 self.filter_changed = Some(Instant::now());
+                // Files are small, and nobody else has to be asked.
+                if self.playback.is_some() {
+                    self.judge();
+                }
             }
             Command::Image(command) => {
                 self.settings.image.apply(&command);
@@ -430,6 +439,7 @@ impl Viewer {
                 None => self.status.steering.focus.moment(self.scrub),
             },
             playback: self.playback.as_ref(),
+            counted: self.counted.as_ref(),
             scrub: self.scrub,
             recent: &self.desk.habits.recent,
             model: self.model.as_ref(),

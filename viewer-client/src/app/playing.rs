@@ -76,6 +76,7 @@ impl Viewer {
         if let Some(batch) = &scene.paths {
             self.store.append(batch);
         }
+        self.tally();
         if let Some(path) = scene.current {
             self.status.steering.focus.take_path(path);
         }

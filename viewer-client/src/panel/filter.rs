@@ -4,6 +4,7 @@ use common::{Filter, FilterCounts, SelectorKind};
 use egui::{Button, DragValue, Label, RichText, TextEdit, Ui};
 
 use super::Panel;
+use super::conditions::Builder;
 use super::widgets::{dot, row, toggle};
 use crate::command::{Command, FilterCommand, kind_name};
 use crate::format;
@@ -25,6 +26,7 @@ pub(super) struct FilterPanel {
     /// What is being written, and the text in force when that began.
     draft: String,
     of: String,
+    builder: Builder,
 }
 
 impl Panel for FilterPanel {
@@ -32,6 +34,7 @@ impl Panel for FilterPanel {
         let mut filter = |command| commands.push(Command::Filter(command));
         presets(ui, world, &mut filter);
         self.text(ui, world, &mut filter);
+        self.builder.ui(ui, world, &mut filter);
         selectors(ui, world, &mut filter);
         ui.horizontal(|ui| {
             let settings = &world.settings.filter;
@@ -162,12 +165,13 @@ pub(super) fn meaning(kind: SelectorKind) -> &'static str {
 
 /// What the daemon found, and what is the matter where that is nothing.
 fn found(ui: &mut Ui, world: &World<'_>) {
-    let Some(counts) = world.status.statistics.as_ref().map(|s| &s.filter) else { return };
+    let of_daemon = || world.status.statistics.as_ref().map(|s| &s.filter);
+    let Some(counts) = world.counted.or_else(of_daemon) else { return };
     let reply = world.status.filter.as_ref();
     if let Some(error) = reply.and_then(|reply| reply.error.as_ref()) {
         ui.label(RichText::new(format!("Refused: {error}")).color(theme::BAD));
     }
-    let shown = (world.settings.cloud.shown as usize).min(world.store.len());
+    let shown = (world.settings.cloud.shown as usize).min(world.store.matched());
     let count = |n: u64| format::count(n as f64);
     let text = format!(
         "{} shown of {} matching of {} seen",
@@ -184,7 +188,10 @@ fn found(ui: &mut Ui, world: &World<'_>) {
         let text = format!("{:.2}{error} %", 100.0 * counts.energy_share);
         ui.label(RichText::new(text).monospace().strong());
     });
-    let conditions = reply.map(|reply| reply.conditions.as_slice()).unwrap_or_default();
+    let conditions = match (world.playback, world.store.filter()) {
+        (Some(_), Some(filter)) => filter.condition_texts(),
+        _ => reply.map(|reply| reply.conditions.as_slice()).unwrap_or_default(),
+    };
     if counts.matched == 0 && counts.seen > 0 && !conditions.is_empty() {
         nothing_found(ui, counts, conditions);
     }

@@ -4,6 +4,7 @@
 //! [`PanelName`] where the user may close it.
 
 mod cloud;
+mod conditions;
 mod connect;
 mod diagnostics;
 mod explorer;

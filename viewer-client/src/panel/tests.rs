@@ -70,6 +70,7 @@ impl Stage {
                     scrub: None,
                     recent: &stage.recent,
                     playback: stage.playback.as_ref(),
+                    counted: None,
                     model: stage.model.as_ref(),
                     now: Instant::now(),
                 };
@@ -394,6 +395,7 @@ fn long_numbers_do_not_widen_their_panel() {
                 scrub: None,
                 recent: &stage.recent,
                 playback: None,
+                counted: None,
                 model: stage.model.as_ref(),
                 now: Instant::now(),
             };

@@ -15,7 +15,7 @@ pub use tone::Tone;
 
 use std::collections::VecDeque;
 
-use common::PathBatch;
+use common::{CompiledFilter, PathBatch};
 
 /// What came, and what did not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,6 +46,7 @@ pub struct Store {
     tone: Tone,
     classes: Classes,
     drawn: Drawn,
+    filter: Option<CompiledFilter>,
 }
 
 impl Store {
@@ -61,6 +62,7 @@ impl Store {
             tone: Tone::default(),
             classes: Classes::default(),
             drawn: Drawn::default(),
+            filter: None,
         }
     }
 
@@ -73,9 +75,11 @@ impl Store {
             if self.pages.back().is_none_or(full) {
                 self.open_page();
             }
+            let filter = self.filter.as_ref();
+            let wanted = filter.is_none_or(|f| f.matches(&path.header, path.vertices));
             let Some(page) = self.pages.back_mut() else { return };
             let class = self.classes.number(path.vertices);
-            page.push(&path, self.next_ordinal, class, true);
+            page.push(&path, self.next_ordinal, class, wanted);
             self.tone.note(path.header.luminance);
             self.next_ordinal = self.next_ordinal.wrapping_add(1);
             self.held += 1;
@@ -194,6 +198,19 @@ impl Store {
         if self.drawn != drawn {
             self.drawn = drawn;
             self.pages.iter_mut().for_each(Page::outdate);
+        }
+    }
+
+    /// The filter that paths are judged by.
+    pub fn filter(&self) -> Option<&CompiledFilter> {
+        self.filter.as_ref()
+    }
+
+    /// Judges all paths, and those to come, by another filter; without one, all match.
+    pub fn set_filter(&mut self, filter: Option<CompiledFilter>) {
+        self.filter = filter;
+        for page in &mut self.pages {
+            page.judge(self.filter.as_ref());
         }
     }
 

@@ -1,6 +1,6 @@
 //! A page: as many whole paths as fit into a fixed number of vertices.
 
-use common::{PathHeader, PathView, VertexRecord};
+use common::{CompiledFilter, PathHeader, PathView, VertexRecord};
 use shaders::{LinePoint, encode_radiance, role};
 
 /// Vertices a page holds.
@@ -125,6 +125,21 @@ impl Page {
         });
         self.vertices.extend_from_slice(path.vertices);
         self.matched += usize::from(matched);
+    }
+
+    /// Judges all paths by a filter; without one, all match.
+    pub(super) fn judge(&mut self, filter: Option<&CompiledFilter>) {
+        let mut changed = false;
+        for path in &mut self.paths {
+            let vertices = self.vertices.get(path.range()).unwrap_or_default();
+            let wanted = filter.is_none_or(|filter| filter.matches(&path.header, vertices));
+            changed |= wanted != path.matched;
+            path.matched = wanted;
+        }
+        if changed {
+            self.matched = self.paths.iter().filter(|path| path.matched).count();
+            self.outdate();
+        }
     }
 
     /// Points handed out before are no longer right.
