@@ -57,6 +57,7 @@ impl Habits {
                 open: PanelName::ALL.map(|name| !closed.contains(&name.to_string())),
                 dark,
                 help: false,
+                palette: false,
                 hint: layout["hint"].as_bool().unwrap_or(false),
                 scale: scale.filter(|scale| SCALES.contains(scale)).unwrap_or(100),
             });

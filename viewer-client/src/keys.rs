@@ -168,6 +168,9 @@ pub const BINDINGS: &[Binding] = &[
     bind(plain(Key::T), Group::View, "dark or light", |_| {
         Command::Layout(LayoutCommand::Theme(ThemeName::Toggle))
     }),
+    bind(ctrl(Key::P), Group::View, "find a command by typing", |_| {
+        Command::Layout(LayoutCommand::Palette(Switch::Toggle))
+    }),
     bind(ctrl(Key::Plus), Group::View, "larger texts and buttons", |w| scale(w, 10)),
     bind(ctrl(Key::Minus), Group::View, "smaller texts and buttons", |w| scale(w, -10)),
     bind(ctrl(Key::L), Group::View, "copy a link to this view", |_| {

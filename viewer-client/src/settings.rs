@@ -313,7 +313,7 @@ impl ImageSettings {
 }
 
 /// What the window holds.
-#[expect(clippy::struct_excessive_bools, reason = "three switches of one window")]
+#[expect(clippy::struct_excessive_bools, reason = "switches of one window")]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
     /// Which panels are open, in the order of [`PanelName::ALL`].
@@ -322,6 +322,8 @@ pub struct Layout {
     pub dark: bool,
     /// The sheet of keys is open.
     pub help: bool,
+    /// The palette of commands is open.
+    pub palette: bool,
     /// The first steps are shown.
     pub hint: bool,
     /// Size of texts and buttons in percent, within [`SCALES`].
@@ -334,7 +336,7 @@ pub const SCALES: std::ops::RangeInclusive<u16> = 50..=300;
 impl Default for Layout {
     fn default() -> Self {
         let open = [true; PanelName::ALL.len()];
-        Self { open, dark: true, help: false, hint: false, scale: 100 }
+        Self { open, dark: true, help: false, palette: false, hint: false, scale: 100 }
     }
 }
 
@@ -352,6 +354,7 @@ impl Layout {
             LayoutCommand::Theme(ThemeName::Light) => self.dark = false,
             LayoutCommand::Theme(ThemeName::Toggle) => self.dark = !self.dark,
             LayoutCommand::Help(switch) => switch.apply(&mut self.help),
+            LayoutCommand::Palette(switch) => switch.apply(&mut self.palette),
             LayoutCommand::Hint(switch) => switch.apply(&mut self.hint),
             LayoutCommand::Scale(percent) => self.scale = percent,
         }

@@ -11,7 +11,9 @@ use std::time::{Duration, Instant};
 use egui_wgpu::RenderState;
 
 use crate::camera::{Bounds, ViewCamera};
-use crate::command::{CameraCommand, CloudCommand, Command, ImageCommand, PathCommand};
+use crate::command::{
+    CameraCommand, CloudCommand, Command, ImageCommand, LayoutCommand, PathCommand,
+};
 use crate::connection::{Delivery, FocusNews, Link};
 use crate::darkroom::Darkroom;
 use crate::desk::{Connect, Desk};
@@ -337,8 +339,14 @@ impl Viewer {
             _ => {
                 let before = self.settings.clone();
                 let text = command.to_string();
+                let is_sheet = matches!(
+                    command,
+                    Command::Layout(
+                        LayoutCommand::Help(_) | LayoutCommand::Hint(_) | LayoutCommand::Palette(_)
+                    )
+                );
                 self.carry_out(command);
-                if self.settings != before {
+                if self.settings != before && !is_sheet {
                     let time = self.started.elapsed().as_secs_f64();
                     self.history.note(before, kind(&text), time);
                 }

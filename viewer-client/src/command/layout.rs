@@ -15,6 +15,8 @@ pub enum LayoutCommand {
     Theme(ThemeName),
     /// Opens or closes the sheet of keys.
     Help(Switch),
+    /// The palette of commands.
+    Palette(Switch),
     /// Shows or hides the first steps.
     Hint(Switch),
     /// Size of texts and buttons in percent.
@@ -124,6 +126,7 @@ pub(super) const FORMS: &[Form] = &[
     ),
     ("theme dark|light|toggle", "colours of the interface"),
     ("help on|off|toggle", "the sheet of keys"),
+    ("palette on|off|toggle", "find a command by typing"),
     ("hint on|off|toggle", "the first steps"),
     ("scale PERCENT", "size of texts and buttons (50 to 300)"),
 ];
@@ -134,6 +137,7 @@ impl fmt::Display for LayoutCommand {
             Self::Panel(name, switch) => write!(f, "panel {name} {switch}"),
             Self::Theme(theme) => write!(f, "theme {theme}"),
             Self::Help(switch) => write!(f, "help {switch}"),
+            Self::Palette(switch) => write!(f, "palette {switch}"),
             Self::Hint(switch) => write!(f, "hint {switch}"),
             Self::Scale(percent) => write!(f, "scale {percent}"),
         }
@@ -145,6 +149,7 @@ pub(super) fn parse(word: &str, words: &mut Words<'_>) -> Result<LayoutCommand, 
         "panel" => LayoutCommand::Panel(words.choice("NAME", &PanelName::ALL)?, words.switch()?),
         "theme" => LayoutCommand::Theme(words.choice("NAME", &ThemeName::ALL)?),
         "help" => LayoutCommand::Help(words.switch()?),
+        "palette" => LayoutCommand::Palette(words.switch()?),
         "hint" => LayoutCommand::Hint(words.switch()?),
         "scale" => LayoutCommand::Scale(words.within("PERCENT", SCALES)?),
         other => return Err(CommandError::Unknown(other.to_owned())),

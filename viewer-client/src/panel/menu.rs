@@ -28,6 +28,7 @@ impl Panel for Menu {
                 .ui(ui, |ui| self.connection.show(ui, world, commands));
             ui.menu_button("Camera", |ui| group(ui, world, Group::Camera, commands));
             ui.menu_button("Paths", |ui| group(ui, world, Group::Paths, commands));
+            ui.menu_button("Explorer", |ui| group(ui, world, Group::Explorer, commands));
             ui.menu_button("View", |ui| {
                 windows(ui, world, commands);
                 ui.separator();

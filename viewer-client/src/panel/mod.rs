@@ -14,6 +14,7 @@ mod hint;
 mod image;
 mod menu;
 mod notice;
+mod palette;
 mod path;
 mod playback;
 mod scene;
@@ -74,6 +75,7 @@ pub fn all() -> Vec<(Slot, Box<dyn Panel>)> {
         (Slot::Overlay, Box::new(hint::Hint)),
         (Slot::Overlay, Box::new(notice::NoticePanel)),
         (Slot::Overlay, Box::new(help::Help)),
+        (Slot::Overlay, Box::new(palette::Palette::default())),
     ]
 }
 
