@@ -66,6 +66,38 @@ cloud shown 700
 scene opacity 0.4
 EOF
 
+shot explorer caustic 1280x860 all 60000 <<'EOF'
+panel image off
+panel statistics off
+panel diagnostics off
+panel filter off
+panel scene off
+cloud opacity 0.08
+path pick 0.02 -0.06 0.08
+explorer seed newest
+explorer step 60
+EOF
+
+shot filter caustic 1280x720 all 1200 <<'EOF'
+panel path off
+panel explorer off
+panel statistics off
+panel diagnostics off
+panel image off
+panel cloud off
+cloud shown 900
+filter add any 0.35 0 0.35 0.28
+filter set lpe "C.*DS+L"
+EOF
+
+shot palette cornell 1280x720 all 5000 <<'EOF'
+panel path off
+panel explorer off
+panel statistics off
+panel diagnostics off
+palette on
+EOF
+
 shot image cornell 1280x900 372x640+0+34 4000 <<'EOF'
 panel path off
 panel explorer off

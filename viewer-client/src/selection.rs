@@ -37,8 +37,12 @@ impl Names<'_> {
         self.frame.map_or(scene, |frame| frame.to_world(scene))
     }
 
-    /// The name of a material.
-    pub fn material(&self, index: u16) -> &str {
+    /// The name of the material at a vertex; a dash where there is no surface.
+    pub fn material(&self, vertex: &VertexRecord) -> &str {
+        if vertex.primitive == u32::MAX {
+            return "–";
+        }
+        let index = vertex.material;
         let materials = self.mesh.map(|mesh| mesh.materials.as_slice()).unwrap_or_default();
         materials.get(usize::from(index)).map_or("–", |material| material.name.as_str())
     }
@@ -121,7 +125,7 @@ impl Selection {
                 n.x,
                 n.y,
                 n.z,
-                names.material(vertex.material),
+                names.material(vertex),
             );
             text.push_str(&line);
             text.push('\n');

@@ -113,7 +113,7 @@ fn vertices(ui: &mut Ui, selection: &Selection, names: &Names<'_>, commands: &mu
                 commands.push(Command::Path(PathCommand::Vertex(step)));
             }
             ui.label(vertex.event.name());
-            ui.add(Label::new(names.material(vertex.material)).truncate().sense(Sense::hover()));
+            ui.add(Label::new(names.material(vertex)).truncate().sense(Sense::hover()));
             let p = names.world(vertex.position);
             let text = format!("{:.3} {:.3} {:.3}", p.x, p.y, p.z);
             ui.label(RichText::new(text).monospace().size(11.0));
