@@ -7,6 +7,7 @@ use std::{fs, io};
 use serde_json::{Value, json};
 
 use crate::command::PanelName;
+use crate::keys::KeyPreset;
 use crate::settings::{Layout, SCALES};
 
 /// Connections that are remembered.
@@ -57,6 +58,10 @@ impl Habits {
                 open: PanelName::ALL.map(|name| !closed.contains(&name.to_string())),
                 dark,
                 help: false,
+                keys: match layout["keys"].as_str() {
+                    Some("classic") => KeyPreset::Classic,
+                    _ => KeyPreset::Today,
+                },
                 palette: false,
                 hint: layout["hint"].as_bool().unwrap_or(false),
                 scale: scale.filter(|scale| SCALES.contains(scale)).unwrap_or(100),
@@ -73,6 +78,7 @@ impl Habits {
                 "dark": layout.dark,
                 "scale": layout.scale,
                 "hint": layout.hint,
+                "keys": layout.keys.to_string(),
                 "closed": closed,
             })
         });

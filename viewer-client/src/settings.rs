@@ -9,6 +9,7 @@ use crate::command::{
     LayoutCommand, MOST_SELECTORS, Marks, PanelName, SceneCommand, Shading, Sphere, ThemeName,
     ToneCurve,
 };
+use crate::keys::KeyPreset;
 
 /// Every choice.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -322,6 +323,8 @@ pub struct Layout {
     pub dark: bool,
     /// The sheet of keys is open.
     pub help: bool,
+    /// Which keys there are.
+    pub keys: KeyPreset,
     /// The palette of commands is open.
     pub palette: bool,
     /// The first steps are shown.
@@ -336,7 +339,15 @@ pub const SCALES: std::ops::RangeInclusive<u16> = 50..=300;
 impl Default for Layout {
     fn default() -> Self {
         let open = [true; PanelName::ALL.len()];
-        Self { open, dark: true, help: false, palette: false, hint: false, scale: 100 }
+        Self {
+            open,
+            dark: true,
+            help: false,
+            keys: KeyPreset::Today,
+            palette: false,
+            hint: false,
+            scale: 100,
+        }
     }
 }
 
@@ -354,6 +365,7 @@ impl Layout {
             LayoutCommand::Theme(ThemeName::Light) => self.dark = false,
             LayoutCommand::Theme(ThemeName::Toggle) => self.dark = !self.dark,
             LayoutCommand::Help(switch) => switch.apply(&mut self.help),
+            LayoutCommand::Keys(preset) => self.keys = preset,
             LayoutCommand::Palette(switch) => switch.apply(&mut self.palette),
             LayoutCommand::Hint(switch) => switch.apply(&mut self.hint),
             LayoutCommand::Scale(percent) => self.scale = percent,

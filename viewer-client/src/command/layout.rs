@@ -1,9 +1,10 @@
-//! `panel`, `theme`, `help`, `hint`, `scale`: what the window holds, and how large.
+//! `panel`, `theme`, `help`, `keys`, `palette`, `hint`, `scale`: what the window holds, and how large.
 
 use std::fmt;
 
 use super::Form;
 use super::words::{CommandError, Switch, Words};
+use crate::keys::KeyPreset;
 use crate::settings::SCALES;
 
 /// What may be done to the window.
@@ -15,6 +16,8 @@ pub enum LayoutCommand {
     Theme(ThemeName),
     /// Opens or closes the sheet of keys.
     Help(Switch),
+    /// Which keys there are.
+    Keys(KeyPreset),
     /// The palette of commands.
     Palette(Switch),
     /// Shows or hides the first steps.
@@ -126,6 +129,7 @@ pub(super) const FORMS: &[Form] = &[
     ),
     ("theme dark|light|toggle", "colours of the interface"),
     ("help on|off|toggle", "the sheet of keys"),
+    ("keys today|classic", "those of today's programs, or of the Lvis of 2014"),
     ("palette on|off|toggle", "find a command by typing"),
     ("hint on|off|toggle", "the first steps"),
     ("scale PERCENT", "size of texts and buttons (50 to 300)"),
@@ -137,6 +141,7 @@ impl fmt::Display for LayoutCommand {
             Self::Panel(name, switch) => write!(f, "panel {name} {switch}"),
             Self::Theme(theme) => write!(f, "theme {theme}"),
             Self::Help(switch) => write!(f, "help {switch}"),
+            Self::Keys(preset) => write!(f, "keys {preset}"),
             Self::Palette(switch) => write!(f, "palette {switch}"),
             Self::Hint(switch) => write!(f, "hint {switch}"),
             Self::Scale(percent) => write!(f, "scale {percent}"),
@@ -149,6 +154,7 @@ pub(super) fn parse(word: &str, words: &mut Words<'_>) -> Result<LayoutCommand, 
         "panel" => LayoutCommand::Panel(words.choice("NAME", &PanelName::ALL)?, words.switch()?),
         "theme" => LayoutCommand::Theme(words.choice("NAME", &ThemeName::ALL)?),
         "help" => LayoutCommand::Help(words.switch()?),
+        "keys" => LayoutCommand::Keys(words.choice("NAME", &KeyPreset::ALL)?),
         "palette" => LayoutCommand::Palette(words.switch()?),
         "hint" => LayoutCommand::Hint(words.switch()?),
         "scale" => LayoutCommand::Scale(words.within("PERCENT", SCALES)?),

@@ -121,8 +121,12 @@ impl FilterPanel {
 fn selectors(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterCommand)) {
     let settings = &world.settings.filter;
     if settings.selectors.is_empty() {
-        let text = "Point at a surface and press F2 for a sphere in which paths start, F3 for one \
-                    in which they end, F4 for any and F5 for all through which they pass.";
+        let [start, end, any, all] =
+            world.settings.layout.keys.selectors().map(|(key, _)| key.name());
+        let text = format!(
+            "Point at a surface and press {start} for a sphere in which paths start, {end} for one \
+             in which they end, {any} for any and {all} for all through which they pass.",
+        );
         ui.add(Label::new(RichText::new(text).small().weak()).wrap());
         return;
     }

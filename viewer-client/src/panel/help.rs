@@ -1,10 +1,10 @@
 //! The sheet of keys.
 
-use egui::{Align, Frame, Grid, Id, Label, Layout, Modal, RichText, Ui};
+use egui::{Align, Button, Frame, Grid, Id, Label, Layout, Modal, RichText, Ui};
 
 use super::Panel;
 use crate::command::{Command, LayoutCommand, Switch};
-use crate::keys::{BINDINGS, Group, MOUSE, key_name};
+use crate::keys::{Group, KeyPreset, bindings, key_name};
 use crate::theme;
 use crate::world::World;
 
@@ -21,7 +21,9 @@ impl Panel for Help {
             return;
         }
         let frame = Frame::popup(ui.style()).inner_margin(20);
-        let modal = Modal::new(Id::unique("help")).frame(frame).show(ui.ctx(), sheet);
+        let modal = Modal::new(Id::unique("help"))
+            .frame(frame)
+            .show(ui.ctx(), |ui| sheet(ui, world.settings.layout.keys, commands));
         if modal.should_close() || modal.inner {
             commands.push(Command::Layout(LayoutCommand::Help(Switch::Off)));
         }
@@ -29,33 +31,45 @@ impl Panel for Help {
 }
 
 /// The sheet; true when its button was clicked.
-fn sheet(ui: &mut Ui) -> bool {
+fn sheet(ui: &mut Ui, preset: KeyPreset, commands: &mut Vec<Command>) -> bool {
     let width = (ui.ctx().content_rect().width() - 60.0).min(WIDTH);
     ui.set_width(width);
     ui.label(RichText::new("Keys and mouse").heading().strong());
     ui.add_space(8.0);
     ui.columns(3, |columns| {
         if let [left, middle, right] = columns {
-            section(left, "Mouse", MOUSE.map(|(k, h)| (k.to_owned(), h)));
-            section(left, Group::Camera.title(), keys(Group::Camera));
-            section(middle, Group::Paths.title(), keys(Group::Paths));
-            section(middle, Group::Explorer.title(), keys(Group::Explorer));
-            section(right, Group::View.title(), keys(Group::View));
+            let mouse = preset.mouse().iter().map(|(key, help)| ((*key).to_owned(), *help));
+            section(left, "Mouse", mouse);
+            section(left, Group::Camera.title(), keys(preset, Group::Camera));
+            section(middle, Group::Paths.title(), keys(preset, Group::Paths));
+            section(middle, Group::Explorer.title(), keys(preset, Group::Explorer));
+            section(right, Group::View.title(), keys(preset, Group::View));
         }
     });
     ui.horizontal(|ui| {
         let text = "A path starts at the light and ends at the camera.";
         ui.label(RichText::new(text).weak());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.button("Close").on_hover_text("F1, ? or Escape").clicked()
+            let close = ui.button("Close").on_hover_text("? or Escape").clicked();
+            for other in KeyPreset::ALL.into_iter().rev() {
+                let (name, tip) = match other {
+                    KeyPreset::Today => ("Today's keys", "Those of today's programs"),
+                    KeyPreset::Classic => ("Keys of 2014", "Those of the first Lvis"),
+                };
+                let button = Button::selectable(preset == other, name);
+                if ui.add(button).on_hover_text(tip).clicked() {
+                    commands.push(Command::Layout(LayoutCommand::Keys(other)));
+                }
+            }
+            close
         })
         .inner
     })
     .inner
 }
 
-fn keys(group: Group) -> Vec<(String, &'static str)> {
-    let of_group = BINDINGS.iter().filter(|b| b.group == group);
+fn keys(preset: KeyPreset, group: Group) -> Vec<(String, &'static str)> {
+    let of_group = bindings(preset).into_iter().filter(|b| b.group == group);
     of_group.map(|b| (key_name(b.shortcut), b.help)).collect()
 }
 

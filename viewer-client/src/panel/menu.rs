@@ -6,7 +6,7 @@ use egui::{Align, Button, Label, Layout, MenuBar, PopupCloseBehavior, RichText, 
 use super::Panel;
 use super::connect::ConnectMenu;
 use crate::command::{Command, LayoutCommand, PanelName, Switch, ThemeName};
-use crate::keys::{BINDINGS, Binding, Group, key_name};
+use crate::keys::{Binding, Group, bindings, key_name};
 use crate::theme;
 use crate::world::World;
 
@@ -43,7 +43,8 @@ impl Panel for Menu {
 
 /// Every key of a group, as a menu.
 fn group(ui: &mut Ui, world: &World<'_>, group: Group, commands: &mut Vec<Command>) {
-    for binding in BINDINGS.iter().filter(|b| b.group == group) {
+    let keys = bindings(world.settings.layout.keys);
+    for binding in keys.into_iter().filter(|b| b.group == group) {
         item(ui, world, binding, commands);
     }
 }

@@ -5,7 +5,7 @@ use egui::{Button, Frame, Id, Key, Label, Modal, RichText, ScrollArea, TextEdit,
 use super::Panel;
 use super::widgets::capitalised;
 use crate::command::{Command, LayoutCommand, Switch, forms};
-use crate::keys::{BINDINGS, key_name};
+use crate::keys::{bindings, key_name};
 use crate::theme;
 use crate::world::World;
 
@@ -119,7 +119,8 @@ fn find(text: &str, world: &World<'_>) -> Vec<Entry> {
         let name = name.to_lowercase();
         words.iter().all(|word| name.contains(word.as_str()))
     };
-    for binding in BINDINGS.iter().filter(|binding| fits(binding.help)) {
+    let keys = bindings(world.settings.layout.keys);
+    for binding in keys.into_iter().filter(|binding| fits(binding.help)) {
         let choice = Choice::Run((binding.command)(world));
         let (name, note) = (capitalised(binding.help), key_name(binding.shortcut));
         found.push(Entry { name, note, choice });

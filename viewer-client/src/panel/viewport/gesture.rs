@@ -3,6 +3,7 @@
 use egui::{Key, PointerButton, Response, Ui, Vec2};
 
 use crate::command::{CameraCommand, Command};
+use crate::keys::KeyPreset;
 use crate::world::World;
 
 /// Degrees the view turns for a drag over the height of the viewport.
@@ -29,6 +30,7 @@ pub(super) fn read(ui: &Ui, response: &Response, world: &World<'_>, commands: &m
         push(command);
     }
     if world.camera.is_flying()
+        && world.settings.layout.keys == KeyPreset::Today
         && let Some(command) = flight(ui)
     {
         push(command);
@@ -42,8 +44,12 @@ fn drag(ui: &Ui, response: &Response, world: &World<'_>) -> Option<CameraCommand
     }
     let shift = ui.input(|input| input.modifiers.shift);
     let secondary = response.dragged_by(PointerButton::Secondary);
-    if secondary || shift {
+    let classic = world.settings.layout.keys == KeyPreset::Classic;
+    if (secondary && !classic) || shift {
         return Some(CameraCommand::Pan(delta.x, -delta.y));
+    }
+    if classic && !secondary {
+        return None;
     }
     // Screens count downwards; a drag to the right turns the scene to the right.
     Some(if world.camera.is_flying() {

@@ -1,6 +1,5 @@
 //! Spherical selectors in the view: drawn, made under the cursor, moved and scaled by handles.
 
-use common::SelectorKind;
 use egui::{Align2, Color32, FontId, Id, Key, Painter, Pos2, Response, Stroke, Ui, vec2};
 use glam::{DVec3, Vec3};
 
@@ -16,13 +15,6 @@ const SIZE: f32 = 0.06;
 const REACH: f32 = 11.0;
 /// Points of a drawn circle.
 const CIRCLE: usize = 48;
-/// Keys that make a sphere, with its kind.
-const KEYS: [(Key, SelectorKind); 4] = [
-    (Key::F2, SelectorKind::Start),
-    (Key::F3, SelectorKind::End),
-    (Key::F4, SelectorKind::Any),
-    (Key::F5, SelectorKind::All),
-];
 
 /// What the user holds of the chosen selector.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,8 +64,9 @@ pub(super) fn interact(
 ) -> bool {
     let mut push = |command| commands.push(Command::Filter(command));
     if let Some(place) = response.hover_pos() {
-        let pressed = KEYS.iter().find(|(key, _)| ui.input(|input| input.key_pressed(*key)));
-        if let Some(&(_, kind)) = pressed {
+        let keys = world.settings.layout.keys.selectors();
+        let pressed = keys.into_iter().find(|(key, _)| ui.input(|input| input.key_pressed(*key)));
+        if let Some((_, kind)) = pressed {
             let ball = under_cursor(projector, place, world);
             push(FilterCommand::Add(Sphere { kind, place: ball.place(world) }));
             return true;

@@ -1,6 +1,10 @@
 //! Which key does what. The table is the help sheet, too.
 
-use common::{ExplorerCommand, MIN_RATE, Order, Pace, Seed, SkipTo};
+mod classic;
+
+use std::fmt;
+
+use common::{ExplorerCommand, MIN_RATE, Order, Pace, Seed, SelectorKind, SkipTo};
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use crate::command::{
@@ -52,8 +56,63 @@ impl Group {
     }
 }
 
-/// The mouse, for the help sheet; [`crate::panel`]'s viewport gives it this meaning.
-pub const MOUSE: [(&str, &str); 7] = [
+/// Which keys there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum KeyPreset {
+    /// Those of today's programs.
+    #[default]
+    Today,
+    /// Those of the Lvis of 2014.
+    Classic,
+}
+
+impl KeyPreset {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Today, Self::Classic];
+
+    /// Keys that make a spherical selector under the cursor.
+    pub fn selectors(self) -> [(Key, SelectorKind); 4] {
+        use SelectorKind::{All, Any, End, Start};
+        match self {
+            Self::Today => [(Key::F2, Start), (Key::F3, End), (Key::F4, Any), (Key::F5, All)],
+            Self::Classic => [(Key::Z, Start), (Key::X, End), (Key::V, Any), (Key::C, All)],
+        }
+    }
+
+    /// The mouse, for the help sheet.
+    pub fn mouse(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Self::Today => MOUSE,
+            Self::Classic => classic::MOUSE,
+        }
+    }
+}
+
+impl fmt::Display for KeyPreset {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Today => "today",
+            Self::Classic => "classic",
+        })
+    }
+}
+
+/// The bindings of a preset, in the order of the help sheet.
+pub fn bindings(preset: KeyPreset) -> Vec<&'static Binding> {
+    if preset == KeyPreset::Today {
+        return BINDINGS.iter().collect();
+    }
+    let is_free = |binding: &&Binding| {
+        let shortcut = binding.shortcut;
+        let plain = shortcut.modifiers == Modifiers::NONE;
+        !(plain && classic::is_taken(shortcut.logical_key))
+            && classic::BINDINGS.iter().all(|other| other.shortcut != shortcut)
+    };
+    classic::BINDINGS.iter().chain(BINDINGS.iter().filter(is_free)).collect()
+}
+
+/// The mouse today; [`crate::panel`]'s viewport gives it this meaning.
+const MOUSE: &[(&str, &str)] = &[
     ("Click", "select a path; again, the next one there"),
     ("F2 F3 F4 F5", "a sphere under the cursor: paths that start, end, pass any, pass all"),
     ("Delete", "remove the chosen sphere"),
@@ -84,8 +143,8 @@ const fn bind(
     Binding { shortcut, group, help, command }
 }
 
-/// Every binding, in the order of the help sheet.
-pub const BINDINGS: &[Binding] = &[
+/// Today's bindings, in the order of the help sheet.
+const BINDINGS: &[Binding] = &[
     bind(plain(Key::F), Group::Camera, "fly, or orbit again", |_| {
         Command::Camera(CameraCommand::Fly(Switch::Toggle))
     }),
@@ -125,19 +184,8 @@ pub const BINDINGS: &[Binding] = &[
     bind(plain(Key::Escape), Group::Paths, "select no path", |_| {
         Command::Path(PathCommand::Deselect)
     }),
-    bind(plain(Key::Enter), Group::Explorer, "explore the selected path, or the newest", |w| {
-        let seed = w.selection.map_or(Seed::Newest, |s| Seed::Path(s.header.id));
-        explore(ExplorerCommand::Seed(seed))
-    }),
-    bind(plain(Key::K), Group::Explorer, "play or pause", |w| {
-        if let Some(command) = in_file(w, PlayCommand::Run(Switch::Toggle)) {
-            return command;
-        }
-        let state = &w.status.steering.explorer;
-        let rate = if state.rate >= MIN_RATE { state.rate } else { 2.0 };
-        let paused = state.pace == Pace::Paused;
-        explore(if paused { ExplorerCommand::Play(rate) } else { ExplorerCommand::Pause })
-    }),
+    bind(plain(Key::Enter), Group::Explorer, "explore the selected path, or the newest", seed),
+    bind(plain(Key::K), Group::Explorer, "play or pause", play_or_pause),
     bind(plain(Key::N), Group::Explorer, "one step", |w| {
         in_file(w, PlayCommand::By(1)).unwrap_or_else(|| explore(ExplorerCommand::Step(1)))
     }),
@@ -186,6 +234,22 @@ fn in_file(world: &World<'_>, command: PlayCommand) -> Option<Command> {
     world.playback.map(|_| Command::Play(command))
 }
 
+/// Makes the selected path the explorer's, or the newest where none is selected.
+fn seed(world: &World<'_>) -> Command {
+    let seed = world.selection.map_or(Seed::Newest, |s| Seed::Path(s.header.id));
+    explore(ExplorerCommand::Seed(seed))
+}
+
+fn play_or_pause(world: &World<'_>) -> Command {
+    if let Some(command) = in_file(world, PlayCommand::Run(Switch::Toggle)) {
+        return command;
+    }
+    let state = &world.status.steering.explorer;
+    let rate = if state.rate >= MIN_RATE { state.rate } else { 2.0 };
+    let paused = state.pace == Pace::Paused;
+    explore(if paused { ExplorerCommand::Play(rate) } else { ExplorerCommand::Pause })
+}
+
 fn explore(command: ExplorerCommand) -> Command {
     Command::Order(Order::Explorer(command))
 }
@@ -214,9 +278,10 @@ pub fn pressed(ctx: &egui::Context, world: &World<'_>, commands: &mut Vec<Comman
     if ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Questionmark)) {
         commands.push(help());
     }
+    let preset = world.settings.layout.keys;
     // Those with modifiers first: without them, a key also fits its plain binding.
     let (plain, modified): (Vec<&Binding>, Vec<&Binding>) =
-        BINDINGS.iter().partition(|b| b.shortcut.modifiers == Modifiers::NONE);
+        bindings(preset).into_iter().partition(|b| b.shortcut.modifiers == Modifiers::NONE);
     for binding in modified.into_iter().chain(plain) {
         if ctx.input_mut(|input| input.consume_shortcut(&binding.shortcut)) {
             commands.push((binding.command)(world));
