@@ -19,7 +19,7 @@ use viewer_client::connection::{Greeting, Peer, Session};
 /// Viewers, and how many of them never read.
 const CROWDS: [(usize, usize); 4] = [(0, 0), (1, 0), (4, 1), (15, 4)];
 /// Every crowd is measured this often, in turns, so that what else the machine does hits all alike.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 8;
 /// How long each time.
 const LASTS: Duration = Duration::from_millis(2500);
 
@@ -139,7 +139,7 @@ fn median(values: &[f64]) -> f64 {
     sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[tokio::test(flavor = "multi_thread", worker_threads = 1)]
 #[ignore = "takes a minute and wants a quiet machine"]
 async fn viewers_cost_the_chains_little() {
     let daemon = start();

@@ -17,7 +17,7 @@ use crate::steering::Envelope;
 /// Mutations of all chains together in one round: about a tenth of a second of one core.
 const ROUND_MUTATIONS: u64 = 1 << 17;
 /// Steps of each chain that are shown in a round, while anyone looks.
-const WINDOW: u64 = 32;
+const WINDOW: u64 = 20;
 /// How long paused chains wait before they see whether they are to end.
 const PAUSE: Duration = Duration::from_millis(100);
 /// Samples drawn at most for a precision that the driver asks for.
