@@ -62,6 +62,7 @@ impl Habits {
                     Some("classic") => KeyPreset::Classic,
                     _ => KeyPreset::Today,
                 },
+                seen: false,
                 palette: false,
                 hint: layout["hint"].as_bool().unwrap_or(false),
                 scale: scale.filter(|scale| SCALES.contains(scale)).unwrap_or(100),

@@ -325,6 +325,8 @@ pub struct Layout {
     pub help: bool,
     /// Which keys there are.
     pub keys: KeyPreset,
+    /// Others see where this viewer looks, and its filter.
+    pub seen: bool,
     /// The palette of commands is open.
     pub palette: bool,
     /// The first steps are shown.
@@ -344,6 +346,7 @@ impl Default for Layout {
             dark: true,
             help: false,
             keys: KeyPreset::Today,
+            seen: false,
             palette: false,
             hint: false,
             scale: 100,
@@ -366,6 +369,7 @@ impl Layout {
             LayoutCommand::Theme(ThemeName::Toggle) => self.dark = !self.dark,
             LayoutCommand::Help(switch) => switch.apply(&mut self.help),
             LayoutCommand::Keys(preset) => self.keys = preset,
+            LayoutCommand::Seen(switch) => switch.apply(&mut self.seen),
             LayoutCommand::Palette(switch) => switch.apply(&mut self.palette),
             LayoutCommand::Hint(switch) => switch.apply(&mut self.hint),
             LayoutCommand::Scale(percent) => self.scale = percent,

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use common::{Diagnostics, FilterCounts};
+use common::{Attendee, Diagnostics, FilterCounts};
 
 use crate::camera::ViewCamera;
 use crate::command::PanelName;
@@ -65,6 +65,13 @@ impl World<'_> {
             | PanelName::Image => self.playback.is_none(),
             PanelName::Filter | PanelName::Cloud | PanelName::Scene | PanelName::Path => true,
         }
+    }
+
+    /// The other viewers of the daemon.
+    pub fn others(&self) -> impl Iterator<Item = &Attendee> {
+        let own = self.status.welcome.as_ref().map(|welcome| welcome.session);
+        let viewers = self.status.steering.presence.viewers.iter();
+        viewers.filter(move |viewer| Some(viewer.author.session) != own)
     }
 
     /// What names and units the description of a path needs.

@@ -8,6 +8,7 @@ mod selecting;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
+use common::{Appearance, Gaze};
 use egui_wgpu::RenderState;
 
 use crate::camera::{Bounds, ViewCamera};
@@ -40,6 +41,9 @@ const BATCHES_PER_FRAME: usize = 128;
 /// A filter that the user's hand is changing is sent when the hand has rested so long.
 const HAND: Duration = Duration::from_millis(120);
 
+/// The others are told of a new point of view this often at most.
+const APPEARANCE: Duration = Duration::from_millis(500);
+
 /// Everything behind the window.
 #[derive(Debug)]
 pub struct Viewer {
@@ -64,6 +68,8 @@ pub struct Viewer {
     script: Vec<Command>,
     /// Orders given so far: the number of the last one.
     orders: u32,
+    /// What the others were shown of this viewer last, and when.
+    appearance: (Appearance, Instant),
     /// Filters set so far: the number of the last one.
     filters: u32,
     /// The filter that was asked for last, and when the user changed it since.
@@ -112,6 +118,7 @@ impl Viewer {
             closing: false,
             script: Vec::new(),
             orders: 0,
+            appearance: (Appearance::default(), Instant::now()),
             filters: 0,
             asked_for: String::new(),
             filter_changed: None,
@@ -225,6 +232,7 @@ impl Viewer {
                 self.store.append(&batch);
             }
         }
+        self.appear();
         if self.filter_changed.is_some_and(|at| at.elapsed() >= HAND) {
             self.filter_changed = None;
             if self.settings.filter.wanted() != self.asked_for {
@@ -256,6 +264,7 @@ impl Viewer {
             if !self.status.embedded {
                 self.desk.habits.note(&self.status.address);
             }
+            self.appearance.0 = Appearance::default();
             self.status.welcome(welcome);
         }
         if let Some(scene) = delivery.scene {
@@ -414,6 +423,25 @@ impl Viewer {
                 }
             }
             Command::Quit => self.closing = true,
+        }
+    }
+
+    /// Shows the others where this viewer looks, if the user wishes, when that has changed.
+    fn appear(&mut self) {
+        let (shown, at) = &self.appearance;
+        if at.elapsed() < APPEARANCE || !self.status.is_connected() {
+            return;
+        }
+        let appearance = if self.settings.layout.seen {
+            let lens = self.camera.lens(1.0);
+            let far = lens.eye + 0.5 * self.camera.bounds().radius() * lens.forward;
+            let gaze = Gaze { eye: lens.eye.into(), target: far.into() };
+            Appearance { gaze: Some(gaze), filter: self.settings.filter.wanted() }
+        } else {
+            Appearance::default()
+        };
+        if appearance != *shown && self.link.as_ref().is_some_and(|l| l.show(appearance.clone())) {
+            self.appearance = (appearance, Instant::now());
         }
     }
 

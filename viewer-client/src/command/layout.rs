@@ -18,6 +18,8 @@ pub enum LayoutCommand {
     Help(Switch),
     /// Which keys there are.
     Keys(KeyPreset),
+    /// Whether others see where this viewer looks, and its filter.
+    Seen(Switch),
     /// The palette of commands.
     Palette(Switch),
     /// Shows or hides the first steps.
@@ -130,6 +132,7 @@ pub(super) const FORMS: &[Form] = &[
     ("theme dark|light|toggle", "colours of the interface"),
     ("help on|off|toggle", "the sheet of keys"),
     ("keys today|classic", "those of today's programs, or of the Lvis of 2014"),
+    ("seen on|off|toggle", "let others see where you look, and your filter"),
     ("palette on|off|toggle", "find a command by typing"),
     ("hint on|off|toggle", "the first steps"),
     ("scale PERCENT", "size of texts and buttons (50 to 300)"),
@@ -142,6 +145,7 @@ impl fmt::Display for LayoutCommand {
             Self::Theme(theme) => write!(f, "theme {theme}"),
             Self::Help(switch) => write!(f, "help {switch}"),
             Self::Keys(preset) => write!(f, "keys {preset}"),
+            Self::Seen(switch) => write!(f, "seen {switch}"),
             Self::Palette(switch) => write!(f, "palette {switch}"),
             Self::Hint(switch) => write!(f, "hint {switch}"),
             Self::Scale(percent) => write!(f, "scale {percent}"),
@@ -155,6 +159,7 @@ pub(super) fn parse(word: &str, words: &mut Words<'_>) -> Result<LayoutCommand, 
         "theme" => LayoutCommand::Theme(words.choice("NAME", &ThemeName::ALL)?),
         "help" => LayoutCommand::Help(words.switch()?),
         "keys" => LayoutCommand::Keys(words.choice("NAME", &KeyPreset::ALL)?),
+        "seen" => LayoutCommand::Seen(words.switch()?),
         "palette" => LayoutCommand::Palette(words.switch()?),
         "hint" => LayoutCommand::Hint(words.switch()?),
         "scale" => LayoutCommand::Scale(words.within("PERCENT", SCALES)?),

@@ -162,7 +162,7 @@ mod tests {
         image exposure -1.5\nimage auto\nimage zoom 2\nimage look 0.25 0.75\nimage fit\n\
         image show difference\nimage tone gamma\nimage gamma 1.8\nimage reference a b.exr\n\
         image forget\nimage save out.png\nimage tev 127.0.0.1:14158\n\
-        panel statistics off\ntheme light\nhelp toggle\nkeys classic\npalette on\nhint off\nscale 125\n\
+        panel statistics off\ntheme light\nhelp toggle\nkeys classic\nseen on\npalette on\nhint off\nscale 125\n\
         path pick 0.1 -0.2 0.01\npath stay 2\npath none\npath vertex 3\nplay toggle\nplay rate 0.5\nplay to 7\n\
         play by -2\nplay accepted\n\
         connect 127.0.0.1:50061\nshare\nscreenshot a b.png\n\

@@ -10,8 +10,8 @@ use common::{
 use egui::{Button, ComboBox, DragValue, RichText, Ui};
 
 use super::Panel;
-use super::widgets::{Scale, dot, empty_state, row, slider};
-use crate::command::Command;
+use super::widgets::{Scale, dot, empty_state, row, slider, toggle};
+use crate::command::{Command, LayoutCommand};
 use crate::format;
 use crate::theme;
 use crate::world::World;
@@ -86,6 +86,16 @@ fn lease(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
             ask(ui, "Ask to drive", "Only the driver may steer", LeaseRequest::Ask);
         }
     });
+    let others: Vec<&str> = world.others().map(|viewer| viewer.author.name.as_str()).collect();
+    if !others.is_empty() {
+        ui.label(RichText::new(format!("Also here: {}", others.join(", "))).weak());
+        let tip = "The others see your eye in the scene, and your filter";
+        if let Some(switch) =
+            toggle(ui, "Show others where I look", tip, world.settings.layout.seen)
+        {
+            commands.push(Command::Layout(LayoutCommand::Seen(switch)));
+        }
+    }
     if let Some(remark) = steering.remarks.back() {
         ui.label(RichText::new(remark).small().weak()).on_hover_text("What the daemon said last");
     }

@@ -4,6 +4,7 @@ mod gesture;
 mod ghost;
 mod highlight;
 mod legend;
+mod others;
 mod overlay;
 mod picture;
 mod project;
