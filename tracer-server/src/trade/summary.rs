@@ -1,6 +1,7 @@
 //! What the runs of a point have in common.
 
 use serde::Serialize;
+use tests::Accumulator;
 
 use super::{Plan, Point, Run};
 
@@ -112,16 +113,16 @@ fn plain(plan: &Plan<'_>, point: &Point) -> Summary {
 
 /// Of `a` over `b`; none without two runs of each.
 fn efficiency(a: &[Run], b: &[Run]) -> Option<Efficiency> {
-    let moments = |runs: &[Run]| {
-        let logs = runs.iter().map(|run| (run.relative_mse * run.cpu_seconds).ln());
-        let count = runs.len() as f64;
-        let mean = logs.clone().sum::<f64>() / count;
-        let spread = logs.map(|log| (log - mean).powi(2)).sum::<f64>() / (count - 1.0);
-        (runs.len() > 1).then_some((mean, spread / count))
+    let logs = |runs: &[Run]| {
+        let mut logs = Accumulator::default();
+        for run in runs {
+            logs.push((run.relative_mse * run.cpu_seconds).ln());
+        }
+        (runs.len() > 1).then_some(logs)
     };
-    let ((a, a_variance), (b, b_variance)) = (moments(a)?, moments(b)?);
-    let error = (a_variance + b_variance).sqrt();
-    Some(Efficiency { ratio: (b - a).exp(), factor: (2.0 * error).exp() })
+    let (a, b) = (logs(a)?, logs(b)?);
+    let error = a.standard_error().hypot(b.standard_error());
+    Some(Efficiency { ratio: (b.mean() - a.mean()).exp(), factor: (2.0 * error).exp() })
 }
 
 /// Slope of log error over log CPU seconds through the points of one setting: -1 when it has no

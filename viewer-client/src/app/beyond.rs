@@ -1,6 +1,6 @@
 //! Commands that go beyond the window: other daemons, links, pictures of the window, the filter.
 
-use super::{Stale, Viewer};
+use super::Viewer;
 use crate::command::DeskCommand;
 use crate::connection::Peer;
 use crate::share;
@@ -49,13 +49,8 @@ impl Viewer {
         self.link = None;
         self.status = Status::new(address, false);
         (self.filters, self.filter_in_force) = (0, 0);
-        self.selection = None;
         self.waiting.clear();
-        self.scene_hash.clear();
-        self.store.clear();
-        self.darkroom.film.clear();
-        self.model = None;
-        self.stale = Stale { surfaces: true, aids: true };
+        self.forget_scene();
         self.set_link(link);
         self.run_script(commands);
         Ok(())

@@ -64,7 +64,7 @@ pub struct Viewer {
     uploaded_any: bool,
     started: Instant,
     closing: bool,
-    /// Commands for the camera that wait for the scene.
+    /// Commands that wait for the scene, the image or the first paths.
     script: Vec<Command>,
     /// Orders given so far: the number of the last one.
     orders: u32,
@@ -170,12 +170,12 @@ impl Viewer {
     }
 
     /// Follows the commands of a script. Those for the camera wait for the scene, which would
-    /// otherwise undo them; those that give the image away wait for the image.
+    /// otherwise undo them; those that give the image away wait for the image; and those that need a
+    /// daemon that listens, or a path to pick, wait for the first paths.
     pub fn run_script(&mut self, commands: Vec<Command>) {
         for command in commands {
             let must_wait = match command {
                 Command::Camera(_) => self.model.is_none(),
-                // Orders need a daemon that listens, and most of them and picking a path.
                 Command::Order(_) | Command::Path(_) => self.store.is_empty(),
                 Command::Image(ImageCommand::Save(_) | ImageCommand::Tev(_)) => {
                     self.darkroom.film.size() == [0, 0]
@@ -253,12 +253,8 @@ impl Viewer {
     pub fn take(&mut self, delivery: Delivery) {
         if let Some(welcome) = delivery.welcome {
             if welcome.scene_hash != self.scene_hash {
+                self.forget_scene();
                 self.scene_hash.clone_from(&welcome.scene_hash);
-                self.store.clear();
-                self.darkroom.film.clear();
-                self.model = None;
-                self.selection = None;
-                self.stale = Stale { surfaces: true, aids: true };
             }
             self.waiting.clear();
             if !self.status.embedded {
@@ -318,6 +314,16 @@ impl Viewer {
         if let Some(state) = delivery.state {
             self.status.link = state;
         }
+    }
+
+    /// Leaves a scene, with everything that came of it.
+    fn forget_scene(&mut self) {
+        self.scene_hash.clear();
+        self.store.clear();
+        self.darkroom.film.clear();
+        self.model = None;
+        self.selection = None;
+        self.stale = Stale { surfaces: true, aids: true };
     }
 
     fn set_model(&mut self, model: Option<Model>) {

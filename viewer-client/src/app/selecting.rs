@@ -56,11 +56,8 @@ impl Viewer {
             reader.next();
         }
         let Some(path) = reader.next() else { return };
-        self.selection = Some(Selection {
-            header: path.header,
-            vertices: path.vertices.to_vec(),
-            vertex: None,
-            place: (usize::from(rank) + 1, batch.len()),
-        });
+        let place = (usize::from(rank) + 1, batch.len());
+        let selection = Selection::new(path.header, path.vertices.to_vec());
+        self.selection = Some(Selection { place, ..selection });
     }
 }

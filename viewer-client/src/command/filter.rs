@@ -36,6 +36,13 @@ pub enum FilterCommand {
     DeleteAll,
 }
 
+impl FilterCommand {
+    /// Makes `text` the filter, which leaves the selectors as they are; all paths where it is blank.
+    pub fn text(text: String) -> Self {
+        Self::Set(if text.is_empty() { "true".to_owned() } else { text })
+    }
+}
+
 /// A spherical selector: its kind, and its centre and radius in the file's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {

@@ -51,8 +51,7 @@ fn parts(text: &str) -> (Vec<Filter>, bool) {
 /// The command that makes these parts the filter's text.
 fn together(mut parts: Vec<Filter>, any: bool) -> FilterCommand {
     match parts.len() {
-        // Spheres stay, which `filter clear` would forget.
-        0 => FilterCommand::Set("true".to_owned()),
+        0 => FilterCommand::text(String::new()),
         1 => FilterCommand::Set(parts.remove(0).to_string()),
         _ if any => FilterCommand::Set(Filter::Or(parts).to_string()),
         _ => FilterCommand::Set(Filter::And(parts).to_string()),

@@ -65,14 +65,10 @@ fn presets(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterCommand
         for (name, text, meaning) in PRESETS {
             let chosen = world.settings.filter.text == text;
             if ui.add(Button::selectable(chosen, name)).on_hover_text(meaning).clicked() {
-                filter(set(text));
+                filter(FilterCommand::text(text.to_owned()));
             }
         }
     });
-}
-
-fn set(text: &str) -> FilterCommand {
-    FilterCommand::Set(if text.is_empty() { "true".to_owned() } else { text.to_owned() })
 }
 
 impl FilterPanel {
@@ -108,7 +104,7 @@ impl FilterPanel {
                 ui.label(text.color(theme::BAD));
             }
             Ok(_) if response.lost_focus() || (response.has_focus() && enter) => {
-                filter(set(self.draft.trim()));
+                filter(FilterCommand::text(self.draft.trim().to_owned()));
             }
             Ok(_) => {
                 ui.label(RichText::new("Enter sets it").small().weak());

@@ -3,7 +3,7 @@
 use egui::{Label, RichText, Sense, Slider, Ui};
 
 use super::Panel;
-use super::widgets::{dot, row};
+use super::widgets::{Scale, dot, row, slider};
 use crate::command::{Command, PlayCommand, Switch};
 use crate::dump::{Outcome, Stage, Step};
 use crate::format;
@@ -55,18 +55,13 @@ fn scrubber(ui: &mut Ui, playback: &Playback, commands: &mut Vec<Command>) {
     let (position, count) = playback.place();
     let mut there = position;
     ui.spacing_mut().slider_width = (ui.available_width() - 8.0).max(60.0);
-    let slider = Slider::new(&mut there, 0..=count.saturating_sub(1)).show_value(false);
-    ui.add(slider).on_hover_text("Drag to any step");
+    let steps = Slider::new(&mut there, 0..=count.saturating_sub(1)).show_value(false);
+    ui.add(steps).on_hover_text("Drag to any step");
     if there != position {
         commands.push(Command::Play(PlayCommand::To(u32::try_from(there).unwrap_or(u32::MAX))));
     }
-    let mut rate = playback.rate();
-    row(ui, "Pace", "Steps a second", |ui| {
-        ui.spacing_mut().slider_width = (ui.available_width() - 96.0).max(40.0);
-        let slider = Slider::new(&mut rate, 0.1..=500.0).logarithmic(true).suffix(" /s");
-        ui.add(slider).on_hover_text("Steps a second");
-    });
-    if rate != playback.rate() {
+    let scale = Scale::logarithmic(0.1..=500.0, 1).suffix(" /s");
+    if let Some(rate) = slider(ui, "Pace", "Steps a second", playback.rate(), scale) {
         commands.push(Command::Play(PlayCommand::Rate(rate)));
     }
 }

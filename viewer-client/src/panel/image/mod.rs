@@ -119,9 +119,7 @@ fn region_line(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
             .on_hover_text("The filter wants paths that reached this part of the image only");
         if ui.button("All").on_hover_text("Paths to the whole image").clicked() {
             let text = region::with_region(&world.settings.filter.text, None);
-            let command =
-                FilterCommand::Set(if text.is_empty() { "true".to_owned() } else { text });
-            commands.push(Command::Filter(command));
+            commands.push(Command::Filter(FilterCommand::text(text)));
         }
     });
 }
