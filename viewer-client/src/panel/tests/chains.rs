@@ -1,0 +1,71 @@
+//! Counts and diagnostics of the chains.
+
+use egui_kittest::kittest::Queryable as _;
+
+use super::image::image_stage;
+use super::{Stage, diagnosed, shows, statistics};
+use crate::command::{Command, ImageCommand};
+use crate::panel::{diagnostics, statistics as counts};
+use crate::synthetic::welcome;
+
+#[test]
+fn statistics_show_rates_and_fates() {
+    let mut stage = Stage::new(counts::StatisticsPanel);
+    stage.status.welcome(welcome());
+    stage.status.statistics(statistics());
+    let mut harness = stage.harness();
+    harness.run();
+    for text in [
+        "1.23 M",
+        "0.2500 ± 0.2 %",
+        "bidirectional",
+        "lens",
+        "2.00 k",
+        "75.0 %",
+        "12.5 %",
+        "74.0 %",
+        "4.50 M",
+    ] {
+        assert!(shows(&harness, text), "`{text}` is missing");
+    }
+    harness.get_by_label("lens").hover();
+    harness.run_steps(30);
+    assert!(shows(&harness, "failed: off film"), "the reasons come with the pointer");
+}
+
+#[test]
+fn chains_that_disagree_raise_an_alarm_that_leads_there() {
+    let mut stage = Stage::new(diagnostics::DiagnosticsPanel);
+    stage.film = image_stage(false).film;
+    stage.status.welcome(welcome());
+    stage.status.statistics(diagnosed());
+    let mut harness = stage.harness();
+    harness.run();
+    for text in [
+        "Chains disagree in 0.3 % of the image, R-hat to 1.37",
+        "25.0 k",
+        "steps for an independent one",
+        "bidirectional",
+        "off film",
+        "DDD",
+    ] {
+        assert!(shows(&harness, text), "`{text}` is missing");
+    }
+    for label in ["Show where", "Paths to the worst", "Acceptance", "Explore", "Show"] {
+        harness.get_by_label(label).click();
+        harness.run();
+    }
+    let said = harness.state().said.as_slice();
+    let [show, Command::Filter(crate::command::FilterCommand::Set(text)), map, explore, show_path] =
+        said
+    else {
+        panic!("five clicks, not {said:?}");
+    };
+    let layer = |layer| Command::Image(ImageCommand::Show(layer));
+    assert_eq!(*show, layer(crate::command::Layer::Disagreement), "the map");
+    assert_eq!(*map, layer(crate::command::Layer::Acceptance), "another one");
+    let [u0, v0, ..] = crate::region::region_of(text).expect("a rectangle");
+    assert!((u0 - 2.0 / 40.0).abs() < 1e-9 && (v0 - 4.0 / 30.0).abs() < 1e-9, "{text}");
+    assert_eq!(explore.to_string(), "explorer seed 0.0.0", "the path where a chain stayed");
+    assert_eq!(show_path.to_string(), "path stay 0", "and the same path in the view");
+}

@@ -1,0 +1,70 @@
+//! How paths and surfaces are drawn.
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use super::Stage;
+use crate::command::{CameraCommand, CloudCommand, Command, SceneCommand, Switch};
+use crate::panel::{LEFT_WIDTH, cloud, scene};
+
+#[test]
+fn the_cloud_panel_speaks_in_commands() {
+    let mut harness = Stage::new(cloud::Cloud).harness();
+    harness.run();
+    harness.get_by_label("Freeze").click();
+    harness.run();
+    harness.get_by_label("Clear").click();
+    harness.run();
+    harness.get_by_label("Tint start and end").click();
+    harness.run();
+    let expected =
+        [CloudCommand::Freeze(Switch::On), CloudCommand::Clear, CloudCommand::Ends(Switch::Off)];
+    assert_eq!(harness.state().said, expected.map(Command::Cloud), "three clicks");
+}
+
+#[test]
+fn a_slider_at_rest_says_nothing() {
+    let mut stage = Stage::new(cloud::Cloud);
+    // Values that no slider can show exactly.
+    stage.settings.cloud.width = 0.123_456;
+    stage.settings.cloud.fade = 1e9;
+    let mut harness = stage.harness();
+    harness.run();
+    assert_eq!(harness.state().said, [], "rounding is not the user's hand");
+}
+
+#[test]
+fn long_numbers_do_not_widen_their_panel() {
+    let mut stage = Stage::new(cloud::Cloud);
+    stage.settings.cloud.fade = 1e7;
+    stage.settings.cloud.shown = 10_000_000;
+    stage.settings.cloud.budget_mib = 65_536;
+    let harness = Harness::builder().with_size(egui::vec2(800.0, 700.0)).build_ui_state(
+        |ui, (stage, widths): &mut (Stage, Vec<f32>)| {
+            let left = egui::Panel::left("left").default_size(LEFT_WIDTH);
+            let shown = left.show(ui, |ui| stage.show(ui));
+            widths.push(shown.response.rect.width());
+        },
+        (stage, Vec::new()),
+    );
+    let mut harness = harness;
+    harness.run_steps(5);
+    let widths = &harness.state().1;
+    assert!(widths.windows(2).all(|w| w[0] == w[1]), "the panel creeps: {widths:?}");
+}
+
+#[test]
+fn the_scene_panel_speaks_in_commands() {
+    let mut harness = Stage::new(scene::Scene).harness();
+    harness.run();
+    for label in ["Grid", "Frame all", "Fly"] {
+        harness.get_by_label(label).click();
+        harness.run();
+    }
+    let expected = [
+        Command::Scene(SceneCommand::Grid(Switch::Off)),
+        Command::Camera(CameraCommand::Frame),
+        Command::Camera(CameraCommand::Fly(Switch::Toggle)),
+    ];
+    assert_eq!(harness.state().said, expected, "three clicks");
+}

@@ -1,0 +1,133 @@
+//! The image, its comparison and its maps.
+
+use common::FilmTile;
+use egui::accesskit::Role as WidgetRole;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use super::{Stage, diagnosed, shows};
+use crate::command::{Command, ImageCommand};
+use crate::imaging::Reference;
+use crate::panel::image;
+
+#[test]
+fn the_image_panel_shows_the_film() {
+    let mut stage = Stage::new(image::ImagePanel::default());
+    let rgb = vec![0.5; 40 * 30 * 3];
+    let tile = FilmTile { sequence: 1, width: 40, height: 30, first_row: 0, steps: 2400, rgb };
+    assert!(stage.film.accept(&tile), "a whole image");
+    let mut harness = stage.harness();
+    harness.run();
+    assert!(shows(&harness, "40 × 30, 2 mutations a pixel"), "size and effort");
+    harness.get_by_label("2:1").click();
+    harness.run();
+    assert_eq!(harness.state().said, [Command::Image(ImageCommand::Zoom(2.0))], "zoom");
+}
+
+/// An image panel with a whole film, and perhaps a reference that is a tenth darker.
+pub(super) fn image_stage(compared: bool) -> Stage {
+    let mut stage = Stage::new(image::ImagePanel::default());
+    let rgb = vec![0.5; 40 * 30 * 3];
+    let tile = FilmTile { sequence: 1, width: 40, height: 30, first_row: 0, steps: 2400, rgb };
+    assert!(stage.film.accept(&tile), "a whole image");
+    let pixels = vec![common::Rgb::grey(0.4); 40 * 30];
+    let reference = Reference { name: "right.exr".to_owned(), width: 40, height: 30, pixels };
+    stage.reference = compared.then_some(reference);
+    stage
+}
+
+#[test]
+fn a_pixel_or_a_rectangle_of_the_image_becomes_the_filter() {
+    let mut stage = image_stage(false);
+    stage.settings.filter.text = "edges >= 3".to_owned();
+    let mut harness = stage.harness();
+    harness.run();
+    let film = harness.get_by_role_and_label(WidgetRole::Image, "Film").rect();
+    let pixel = film.height() / 30.0;
+    let corner = egui::pos2(film.center().x - 20.0 * pixel, film.top());
+    let at = |x: f32, y: f32| corner + pixel * egui::vec2(x, y);
+    let filter = |harness: &mut Harness<'_, Stage>| {
+        let said = harness.state_mut().said.drain(..).collect::<Vec<_>>();
+        match said.as_slice() {
+            [Command::Filter(crate::command::FilterCommand::Set(text))] => text.clone(),
+            other => panic!("{other:?} instead of a filter"),
+        }
+    };
+    harness.hover_at(at(10.5, 5.5));
+    harness.run();
+    assert!(shows(&harness, "10, 5") && shows(&harness, "0.5000"), "the values of a pixel");
+    harness.drag_at(at(10.5, 5.5));
+    harness.run();
+    harness.drop_at(at(10.5, 5.5));
+    harness.run();
+    let text = filter(&mut harness);
+    let [u0, v0, u1, v1] = crate::region::region_of(&text).expect("a rectangle");
+    assert!((u0 - 0.25).abs() < 1e-9 && (v0 - 5.0 / 30.0).abs() < 1e-9, "{text}");
+    assert!((u1 - 11.0 / 40.0).abs() < 1e-6 && (v1 - 6.0 / 30.0).abs() < 1e-6, "{text}");
+    assert!(text.contains("edges >= 3"), "the other condition stays: {text}");
+    harness.drag_at(at(4.5, 3.5));
+    harness.run_steps(1);
+    harness.hover_at(at(20.5, 10.5));
+    harness.run_steps(2);
+    harness.drop_at(at(20.5, 10.5));
+    harness.run();
+    let text = filter(&mut harness);
+    let [u0, v0, u1, v1] = crate::region::region_of(&text).expect("a rectangle");
+    let expected = [4.0 / 40.0, 3.0 / 30.0, 21.0 / 40.0, 11.0 / 30.0];
+    for (value, expected) in [u0, v0, u1, v1].into_iter().zip(expected) {
+        assert!((value - expected).abs() < 1e-6, "{text}");
+    }
+    harness.state_mut().settings.filter.text = text;
+    harness.run();
+    assert!(shows(&harness, "Paths to 17 × 8 pixels"), "what is wanted");
+    harness.get_by_label("All").click();
+    harness.run();
+    assert_eq!(filter(&mut harness), "edges >= 3", "and back");
+}
+
+#[test]
+fn the_image_is_compared_with_a_reference() {
+    let mut harness = image_stage(false).harness();
+    harness.run();
+    harness.get_by_label("Difference").click();
+    harness.run();
+    assert_eq!(harness.state().said, [], "there is nothing to compare with");
+    let mut harness = image_stage(true).harness();
+    harness.run();
+    // 0.1^2 / (0.4^2 + 0.01)
+    for text in ["right.exr", "relMSE", "0.059", "125.00 %"] {
+        assert!(shows(&harness, text), "`{text}` is missing");
+    }
+    for label in ["Difference", "False colour", "Forget"] {
+        harness.get_by_label(label).click();
+        harness.run();
+    }
+    let expected = [
+        ImageCommand::Show(crate::command::Layer::Difference),
+        ImageCommand::Tone(crate::command::ToneCurve::False),
+        ImageCommand::Forget,
+    ];
+    assert_eq!(harness.state().said, expected.map(Command::Image), "three clicks");
+    harness.state_mut().settings.image.layer = crate::command::Layer::Error;
+    harness.run();
+    assert!(shows(&harness, "relative squared error"), "its colours are explained");
+}
+
+#[test]
+fn maps_wait_for_the_daemon() {
+    let mut stage = image_stage(false);
+    stage.settings.image.layer = crate::command::Layer::Dwell;
+    stage.status.statistics(diagnosed());
+    let mut harness = stage.harness();
+    harness.run();
+    assert!(shows(&harness, "mean stay at a path"), "its colours are explained");
+    let film = harness.get_by_role_and_label(WidgetRole::Image, "Film").rect();
+    harness.hover_at(film.center());
+    harness.run();
+    assert!(shows(&harness, "dwell") && shows(&harness, "8"), "the value under the cursor");
+    let mut harness = image_stage(false).harness();
+    harness.run();
+    harness.get_by_label("Dwell").click();
+    harness.run();
+    assert_eq!(harness.state().said, [], "there is no map yet");
+}
