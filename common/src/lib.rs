@@ -27,7 +27,7 @@ pub use event::{Event, VertexKind};
 pub use filter::{
     Attribute, Comparison, CompiledFilter, Filter, FilterCounts, FilterError, FilterObject,
     FilterScene, FilterTally, Leaf, LightPathExpression, MAX_FILTER_BYTES, MAX_LEAVES, Name, Named,
-    Place, Selector, SelectorKind, VertexClass, VertexTest, Volume,
+    NearestMiss, Place, Selector, SelectorKind, Shortfall, VertexClass, VertexTest, Volume,
 };
 pub use id::{ChainId, MaterialId, NoPathId, PathId, StrategyId};
 pub use mesh::{MaterialInfo, SceneFrame, SceneMesh};

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::{Camera, Rgb};
+use crate::{Camera, FilterObject, Rgb};
 
 /// How the coordinates that travel relate to the coordinates of the scene file.
 ///
@@ -62,6 +62,8 @@ pub struct SceneMesh {
     pub primitives: Vec<u32>,
     /// The materials.
     pub materials: Vec<MaterialInfo>,
+    /// The objects that have names, each with its primitives.
+    pub objects: Vec<FilterObject>,
     /// The render camera.
     pub camera: Option<Camera>,
 }

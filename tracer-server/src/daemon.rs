@@ -123,5 +123,5 @@ fn session_info(scene: &Scene, ensemble: &EnsembleSettings) -> SessionInfo {
         role: Role::Observer,
         resume: String::new(),
     };
-    SessionInfo { welcome, mesh: scene.preview_mesh(), objects: scene.objects().to_vec() }
+    SessionInfo { welcome, mesh: scene.preview_mesh() }
 }

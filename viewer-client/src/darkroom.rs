@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use crate::command::ImageCommand;
+use crate::command::{ImageCommand, Layer};
 use crate::errand::{Errand, Errands, Outcome};
 use crate::film::Film;
-use crate::imaging::{self, Reference, Sources};
+use crate::imaging::{self, FlipMap, Reference, Sources};
 use crate::settings::ImageSettings;
 use crate::status::Status;
 
@@ -16,6 +16,8 @@ pub struct Darkroom {
     pub film: Film,
     /// What it is compared with.
     pub reference: Option<Reference>,
+    /// How different it looks from that, where that was asked for.
+    pub flip: Option<FlipMap>,
     errands: Errands,
 }
 
@@ -30,11 +32,12 @@ impl Darkroom {
         let started = match command {
             ImageCommand::Reference(file) => self.load(file),
             ImageCommand::Forget => {
-                self.reference = None;
+                (self.reference, self.flip) = (None, None);
                 return;
             }
             ImageCommand::Save(file) => self.save(file, look, status),
             ImageCommand::Tev(address) => self.send(address, status),
+            ImageCommand::Show(Layer::Flip) => self.compare_looks(),
             _ => return,
         };
         if let Err(problem) = started {
@@ -56,13 +59,25 @@ impl Darkroom {
         })
     }
 
+    /// Finds out how different image and reference look, on another thread.
+    fn compare_looks(&mut self) -> Result<(), String> {
+        let reference = self.reference.clone().filter(|r| r.fits(&self.film));
+        let reference = reference.ok_or("Load a reference of the image's size first.")?;
+        let film = self.film.clone();
+        self.errands.start(move || {
+            let map = FlipMap::of(&film, &reference);
+            Ok(Errand::Flip(map.map_err(|error| format!("FLIP cannot compare them: {error}"))))
+        })
+    }
+
     fn save(&mut self, file: &str, look: &ImageSettings, status: &Status) -> Result<(), String> {
         if self.film.size() == [0, 0] {
             return Err("There is no image to save yet.".to_owned());
         }
         let diagnostics = status.statistics.as_ref().and_then(|s| s.diagnostics.as_deref());
         let reference = self.reference.as_ref();
-        let sources = Sources { film: &self.film, reference, diagnostics };
+        let flip = self.flip.as_ref();
+        let sources = Sources { film: &self.film, reference, flip, diagnostics };
         let shown = imaging::develop(sources, look).unwrap_or_default();
         let metadata = metadata(&self.film, status);
         let (film, file) = (self.film.clone(), PathBuf::from(file));
@@ -90,11 +105,29 @@ impl Darkroom {
     pub fn collect(&mut self, look: &mut ImageSettings, status: &mut Status) -> bool {
         let outcomes = self.errands.take();
         let any = !outcomes.is_empty();
+        let is_old = self.flip.as_ref().is_some_and(|map| map.is_old(&self.film));
+        if look.layer == Layer::Flip
+            && is_old
+            && !self.is_busy()
+            && let Err(problem) = self.compare_looks()
+        {
+            look.layer = Layer::Difference;
+            status.say(Err(problem));
+        }
         for outcome in outcomes {
-            let said = outcome.and_then(|errand| match errand {
-                Errand::Done(text) => Ok(text),
-                Errand::Reference(reference) => self.compare_with(reference, look),
-            });
+            let said = match outcome {
+                Ok(Errand::Done(text)) => Ok(text),
+                Ok(Errand::Reference(reference)) => self.compare_with(reference, look),
+                Ok(Errand::Flip(Ok(map))) => {
+                    self.flip = Some(map);
+                    continue;
+                }
+                Ok(Errand::Flip(Err(problem))) => {
+                    look.layer = Layer::Difference;
+                    Err(problem)
+                }
+                Err(problem) => Err(problem),
+            };
             status.say(said);
         }
         any
@@ -114,9 +147,9 @@ impl Darkroom {
             ));
         }
         let said = format!("Compared with {name}");
-        self.reference = Some(reference);
+        (self.reference, self.flip) = (Some(reference), None);
         if !look.layer.compares() {
-            look.layer = crate::command::Layer::Difference;
+            look.layer = Layer::Difference;
         }
         Ok(said)
     }
@@ -142,7 +175,6 @@ mod tests {
     use common::{FilmTile, Rgb};
 
     use super::*;
-    use crate::command::Layer;
 
     fn darkroom() -> (Darkroom, ImageSettings, Status) {
         let mut darkroom = Darkroom::default();

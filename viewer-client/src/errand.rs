@@ -2,7 +2,7 @@
 
 use std::thread::JoinHandle;
 
-use crate::imaging::Reference;
+use crate::imaging::{FlipMap, Reference};
 
 /// Errands that may be under way at the same time.
 const MOST: usize = 4;
@@ -14,6 +14,8 @@ pub enum Errand {
     Done(String),
     /// An image to compare with.
     Reference(Reference),
+    /// How different the image looks from it.
+    Flip(Result<FlipMap, String>),
 }
 
 /// What went well, or why not and what to do.

@@ -4,22 +4,25 @@
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
+use common::Filter;
 use serde_json::{Value, json};
 
-use crate::command::PanelName;
-use crate::keys::KeyPreset;
-use crate::settings::{Layout, SCALES};
+use crate::command::{MOST_KEPT, PanelName, kept_name};
+use crate::keys::{KeyPreset, MousePreset};
+use crate::settings::{KeptFilter, Layout, SCALES, WIDTHS};
 
 /// Connections that are remembered.
 const MOST: usize = 8;
 /// No file of ours is larger.
-const LARGEST: u64 = 64 << 10;
+const LARGEST: u64 = 256 << 10;
 
 /// What is remembered.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Habits {
     /// HOST:PORT of daemons, the newest first.
     pub recent: Vec<String>,
+    /// Filters that have names; none is on.
+    pub filters: Vec<KeptFilter>,
     /// How the window was left; absent before the first time.
     pub layout: Option<Layout>,
 }
@@ -50,18 +53,28 @@ impl Habits {
         for address in texts(&value["recent"]).into_iter().take(MOST).rev() {
             habits.note(&address);
         }
+        habits.filters = filters(&value["filters"]);
         let layout = &value["layout"];
         if let Some(dark) = layout["dark"].as_bool() {
             let closed = texts(&layout["closed"]);
+            let listed: Vec<String> = texts(&layout["order"]);
+            let folded = texts(&layout["folded"]);
+            let left = layout["left"].as_array().map(|_| texts(&layout["left"]));
+            let is_left = |name: PanelName| match &left {
+                Some(left) => left.contains(&name.to_string()),
+                None => name.is_usually_left(),
+            };
             let scale = layout["scale"].as_u64().and_then(|scale| u16::try_from(scale).ok());
             habits.layout = Some(Layout {
                 open: PanelName::ALL.map(|name| !closed.contains(&name.to_string())),
+                folded: PanelName::ALL.map(|name| folded.contains(&name.to_string())),
+                order: order(&listed),
+                left: PanelName::ALL.map(is_left),
+                widths: widths(&layout["widths"]),
+                mouse: choice(&MousePreset::ALL, &layout["mouse"]),
                 dark,
                 help: false,
-                keys: match layout["keys"].as_str() {
-                    Some("classic") => KeyPreset::Classic,
-                    _ => KeyPreset::Today,
-                },
+                keys: choice(&KeyPreset::ALL, &layout["keys"]),
                 seen: false,
                 palette: false,
                 hint: layout["hint"].as_bool().unwrap_or(false),
@@ -75,7 +88,16 @@ impl Habits {
         let layout = self.layout.as_ref().map(|layout| {
             let closed = PanelName::ALL.into_iter().filter(|name| !layout.is_open(*name));
             let closed: Vec<String> = closed.map(|name| name.to_string()).collect();
+            let names = |wanted: &dyn Fn(PanelName) -> bool| -> Vec<String> {
+                let names = layout.order.into_iter().filter(|name| wanted(*name));
+                names.map(|name| name.to_string()).collect()
+            };
             json!({
+                "order": names(&|_| true),
+                "left": names(&|name| layout.is_left(name)),
+                "folded": names(&|name| layout.is_folded(name)),
+                "widths": layout.widths,
+                "mouse": layout.mouse.to_string(),
                 "dark": layout.dark,
                 "scale": layout.scale,
                 "hint": layout.hint,
@@ -83,7 +105,11 @@ impl Habits {
                 "closed": closed,
             })
         });
-        json!({ "recent": self.recent, "layout": layout })
+        let filters = self.filters.iter().map(|KeptFilter { name, text, inverted, .. }| {
+            json!({ "name": name, "text": text, "inverted": inverted })
+        });
+        let filters: Vec<Value> = filters.collect();
+        json!({ "recent": self.recent, "filters": filters, "layout": layout })
     }
 
     /// Writes them.
@@ -105,9 +131,48 @@ impl Habits {
     }
 }
 
+/// All panels, those that are listed first.
+fn order(listed: &[String]) -> [PanelName; PanelName::ALL.len()] {
+    let place = |name: &PanelName| {
+        let text = name.to_string();
+        listed.iter().position(|listed| *listed == text).unwrap_or(usize::MAX)
+    };
+    let mut order = PanelName::ALL;
+    order.sort_by_key(place);
+    order
+}
+
+/// The widths of the sides; the usual ones where they make no sense.
+fn widths(value: &Value) -> [u16; 2] {
+    let usual = Layout::default().widths;
+    [0, 1].map(|side| {
+        let width = value[side].as_u64().and_then(|width| u16::try_from(width).ok());
+        width.filter(|width| WIDTHS.contains(width)).unwrap_or(usual[side])
+    })
+}
+
+/// The choice of this text; the usual one where there is none.
+fn choice<T: Copy + Default + ToString>(all: &[T], value: &Value) -> T {
+    let text = value.as_str().unwrap_or_default();
+    all.iter().copied().find(|choice| choice.to_string() == text).unwrap_or_default()
+}
+
+/// The kept filters of a file; those that cannot be read are left out.
+fn filters(value: &Value) -> Vec<KeptFilter> {
+    let list = value.as_array().map(Vec::as_slice).unwrap_or_default();
+    let read = list.iter().filter_map(|entry| {
+        let name = kept_name(entry["name"].as_str()?)?;
+        let text = entry["text"].as_str().filter(|text| Filter::parse(text).is_ok())?.to_owned();
+        let inverted = entry["inverted"].as_bool().unwrap_or(false);
+        Some(KeptFilter { name, text, on: false, inverted })
+    });
+    read.take(MOST_KEPT).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::command::{LayoutCommand, Move, Switch, WindowSide};
 
     #[test]
     fn habits_survive_a_file() {
@@ -116,7 +181,22 @@ mod tests {
         assert_eq!(Habits::load(&file), Habits::default(), "the first time");
         let mut layout = Layout { dark: false, scale: 125, hint: false, ..Layout::default() };
         layout.open[PanelName::Statistics as usize] = false;
-        let mut habits = Habits { layout: Some(layout), ..Habits::default() };
+        for command in [
+            LayoutCommand::Arrange(PanelName::Path, Move::Left),
+            LayoutCommand::Fold(PanelName::Scene, Switch::On),
+            LayoutCommand::Width(WindowSide::Left, 333),
+            LayoutCommand::Mouse(MousePreset::Blender),
+        ] {
+            layout.apply(command);
+        }
+        let kept = KeptFilter {
+            name: "my caustics".to_owned(),
+            text: "lpe \"C.*DS+L\"".to_owned(),
+            on: false,
+            inverted: true,
+        };
+        let filters = vec![kept];
+        let mut habits = Habits { filters, layout: Some(layout), ..Habits::default() };
         for i in 0..20 {
             habits.note(&format!("127.0.0.1:{i}"));
         }
@@ -131,7 +211,14 @@ mod tests {
     fn nonsense_is_as_nothing() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let file = folder.path().join("viewer.json");
-        for text in ["", "[]", "{\"recent\": 7, \"layout\": {\"dark\": 1}}", "{", "null"] {
+        for text in [
+            "",
+            "[]",
+            "{\"recent\": 7, \"layout\": {\"dark\": 1}}",
+            "{",
+            "null",
+            "{\"filters\": [{\"name\": \"x\", \"text\": \"edges >\"}, 7]}",
+        ] {
             fs::write(&file, text).expect("a file is written");
             assert_eq!(Habits::load(&file), Habits::default(), "`{text}`");
         }

@@ -40,6 +40,7 @@ pub mod store;
 #[cfg(test)]
 mod synthetic;
 pub mod theme;
+pub mod tree;
 pub mod trends;
 pub mod watch;
 pub mod window;

@@ -5,11 +5,11 @@ use glam::{Vec3, Vec4};
 
 use crate::camera::Bounds;
 use crate::command::{
-    ClipSide, CloudCommand, ColorMode, ColorScale, FilterCommand, ImageCommand, Layer,
-    LayoutCommand, MOST_SELECTORS, Marks, PanelName, SceneCommand, Shading, Sphere, ThemeName,
-    ToneCurve,
+    Channel, ClipSide, CloudCommand, ColorMode, ColorScale, FilterCommand, ImageCommand, Layer,
+    LayoutCommand, MOST_KEPT, MOST_SELECTORS, Marks, Move, PanelName, SceneCommand, Shading,
+    Sphere, ThemeName, ToneCurve, WindowSide,
 };
-use crate::keys::KeyPreset;
+use crate::keys::{KeyPreset, MousePreset};
 
 /// Every choice.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -186,7 +186,22 @@ pub struct FilterSettings {
     pub chosen: Option<usize>,
     /// All paths are wanted in spite of the above.
     pub off: bool,
-    /// What the filter leaves out is wanted instead.
+    /// What text and selectors leave out is wanted instead.
+    pub inverted: bool,
+    /// Filters that have names; each of those that are on must hold, too.
+    pub kept: Vec<KeptFilter>,
+}
+
+/// A filter that has a name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct KeptFilter {
+    /// Its name.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+    /// It holds.
+    pub on: bool,
+    /// Its opposite does.
     pub inverted: bool,
 }
 
@@ -196,7 +211,13 @@ impl FilterSettings {
         match command {
             FilterCommand::Set(text) if text == "true" => self.text.clear(),
             FilterCommand::Set(text) => self.text.clone_from(text),
-            FilterCommand::Clear => *self = Self::default(),
+            FilterCommand::Clear => {
+                let mut kept = std::mem::take(&mut self.kept);
+                for filter in &mut kept {
+                    filter.on = false;
+                }
+                *self = Self { kept, ..Self::default() };
+            }
             FilterCommand::Enable(switch) => {
                 let mut on = !self.off;
                 switch.apply(&mut on);
@@ -228,7 +249,48 @@ impl FilterSettings {
                 self.selectors.clear();
                 self.chosen = None;
             }
+            FilterCommand::Keep(name) => self.keep(name),
+            FilterCommand::Use(name, switch) => {
+                self.named(name).into_iter().for_each(|kept| switch.apply(&mut kept.on));
+            }
+            FilterCommand::Reverse(name, switch) => {
+                self.named(name).into_iter().for_each(|kept| switch.apply(&mut kept.inverted));
+            }
+            FilterCommand::Load(name) => {
+                if let Some(kept) = self.named(name) {
+                    // It would hold twice.
+                    kept.on = false;
+                    let KeptFilter { text, inverted, .. } = kept.clone();
+                    let kept = std::mem::take(&mut self.kept);
+                    *self = Self { text, inverted, kept, ..Self::default() };
+                }
+            }
+            FilterCommand::Forget(name) => self.kept.retain(|kept| kept.name != *name),
         }
+    }
+
+    /// The kept filter of this name.
+    fn named(&mut self, name: &str) -> Option<&mut KeptFilter> {
+        self.kept.iter_mut().find(|kept| kept.name == name)
+    }
+
+    /// Keeps text and selectors under a name, in the place of what had it before.
+    fn keep(&mut self, name: &str) {
+        let text = self.own().to_string();
+        let (inverted, has_room) = (self.inverted, self.kept.len() < MOST_KEPT);
+        let kept = KeptFilter { name: name.to_owned(), text, on: false, inverted };
+        match self.named(name) {
+            Some(known) => *known = kept,
+            None if has_room => self.kept.push(kept),
+            None => {}
+        }
+    }
+
+    /// Text and selectors together.
+    fn own(&self) -> Filter {
+        let selectors: Vec<_> = self.selectors.iter().map(|sphere| sphere.selector()).collect();
+        let text = Filter::parse(&self.text).unwrap_or_default();
+        all_of(vec![Filter::from_selectors(&selectors), text])
     }
 
     /// The text of everything together, as the daemon gets it; blank for all paths.
@@ -236,16 +298,30 @@ impl FilterSettings {
         if self.off {
             return String::new();
         }
-        let selectors: Vec<_> = self.selectors.iter().map(|sphere| sphere.selector()).collect();
-        let text = Filter::parse(&self.text).unwrap_or(Filter::Constant(true));
-        let mut parts = vec![Filter::from_selectors(&selectors), text];
-        parts.retain(|part| *part != Filter::Constant(true));
-        let all = match parts.len() {
-            0 => return String::new(),
-            1 => parts.remove(0),
-            _ => Filter::And(parts),
-        };
-        if self.inverted { Filter::Not(Box::new(all)).to_string() } else { all.to_string() }
+        let kept = self.kept.iter().filter(|kept| kept.on).map(|kept| {
+            let filter = Filter::parse(&kept.text).unwrap_or_default();
+            opposite_if(kept.inverted, filter)
+        });
+        let parts = std::iter::once(opposite_if(self.inverted, self.own())).chain(kept).collect();
+        match all_of(parts) {
+            Filter::Constant(true) => String::new(),
+            all => all.to_string(),
+        }
+    }
+}
+
+/// What all parts want together.
+fn all_of(mut parts: Vec<Filter>) -> Filter {
+    parts.retain(|part| *part != Filter::Constant(true));
+    if parts.len() > 1 { Filter::And(parts) } else { parts.pop().unwrap_or_default() }
+}
+
+/// The filter or, where `inverted` and it leaves out something, its opposite.
+fn opposite_if(inverted: bool, filter: Filter) -> Filter {
+    if inverted && filter != Filter::Constant(true) {
+        Filter::Not(Box::new(filter))
+    } else {
+        filter
     }
 }
 
@@ -262,6 +338,8 @@ pub struct ImageSettings {
     pub centre: [f32; 2],
     /// What is shown.
     pub layer: Layer,
+    /// Which part of the light is shown.
+    pub channel: Channel,
     /// How light becomes colour.
     pub tone: ToneCurve,
     /// The exponent of [`ToneCurve::Gamma`].
@@ -276,6 +354,7 @@ impl Default for ImageSettings {
             zoom: None,
             centre: [0.5; 2],
             layer: Layer::Image,
+            channel: Channel::Rgb,
             tone: ToneCurve::Srgb,
             gamma: 2.2,
         }
@@ -302,6 +381,7 @@ impl ImageSettings {
             ImageCommand::Look(centre) => self.centre = centre,
             ImageCommand::Fit => (self.zoom, self.centre) = (None, [0.5; 2]),
             ImageCommand::Show(layer) => self.layer = layer,
+            ImageCommand::Channel(channel) => self.channel = channel,
             ImageCommand::Tone(tone) => self.tone = tone,
             ImageCommand::Gamma(gamma) => self.gamma = gamma,
             ImageCommand::Forget if self.layer.compares() => self.layer = Layer::Image,
@@ -319,6 +399,16 @@ impl ImageSettings {
 pub struct Layout {
     /// Which panels are open, in the order of [`PanelName::ALL`].
     pub open: [bool; PanelName::ALL.len()],
+    /// Which of them are nothing but their heading.
+    pub folded: [bool; PanelName::ALL.len()],
+    /// All panels from the top of the left side on; where the left side ends, see [`Self::left`].
+    pub order: [PanelName; PanelName::ALL.len()],
+    /// Which of them are on the left side.
+    pub left: [bool; PanelName::ALL.len()],
+    /// Widths of the left and of the right side in points, within [`WIDTHS`].
+    pub widths: [u16; 2],
+    /// What dragging with the mouse does to the camera.
+    pub mouse: MousePreset,
     /// Light on dark.
     pub dark: bool,
     /// The sheet of keys is open.
@@ -337,12 +427,21 @@ pub struct Layout {
 
 /// Sizes of the interface in percent.
 pub const SCALES: std::ops::RangeInclusive<u16> = 50..=300;
+/// Widths of a side in points.
+pub const WIDTHS: std::ops::RangeInclusive<u16> = 200..=900;
+/// Usual widths of the sides.
+const USUAL_WIDTHS: [u16; 2] = [260, 352];
 
 impl Default for Layout {
     fn default() -> Self {
         let open = [true; PanelName::ALL.len()];
         Self {
             open,
+            folded: [false; PanelName::ALL.len()],
+            order: PanelName::ALL,
+            left: PanelName::ALL.map(PanelName::is_usually_left),
+            widths: USUAL_WIDTHS,
+            mouse: MousePreset::Rerun,
             dark: true,
             help: false,
             keys: KeyPreset::Today,
@@ -360,9 +459,72 @@ impl Layout {
         self.open[panel as usize]
     }
 
+    /// True when nothing of the panel is shown but its heading.
+    pub fn is_folded(&self, panel: PanelName) -> bool {
+        self.folded[panel as usize]
+    }
+
+    /// True when the panel belongs to the left side.
+    pub fn is_left(&self, panel: PanelName) -> bool {
+        self.left[panel as usize]
+    }
+
+    /// The panels of a side from the top on, open or not.
+    pub fn side(&self, side: WindowSide) -> impl Iterator<Item = PanelName> + '_ {
+        let left = side == WindowSide::Left;
+        self.order.into_iter().filter(move |name| self.is_left(*name) == left)
+    }
+
+    /// The width of a side in points.
+    pub fn width(&self, side: WindowSide) -> u16 {
+        self.widths[side as usize]
+    }
+
+    /// Puts a panel elsewhere.
+    fn arrange(&mut self, name: PanelName, place: Move) {
+        let side = if self.is_left(name) { WindowSide::Left } else { WindowSide::Right };
+        let near: Vec<PanelName> = self.side(side).filter(|near| self.is_open(*near)).collect();
+        let at = near.iter().position(|near| *near == name);
+        let neighbour = |step: isize| near.get(at?.checked_add_signed(step)?).copied();
+        let before = match place {
+            Move::Left | Move::Right => {
+                self.left[name as usize] = place == Move::Left;
+                None
+            }
+            Move::Before(other) => {
+                self.left[name as usize] = self.is_left(other);
+                Some(other)
+            }
+            Move::Up => match neighbour(-1) {
+                Some(above) => Some(above),
+                None => return,
+            },
+            Move::Down if neighbour(1).is_none() => return,
+            Move::Down => neighbour(2),
+        };
+        if before == Some(name) {
+            return;
+        }
+        let mut order: Vec<PanelName> = self.order.into_iter().filter(|n| *n != name).collect();
+        let index = before.and_then(|before| order.iter().position(|n| *n == before));
+        order.insert(index.unwrap_or(order.len()), name);
+        if let Ok(order) = order.try_into() {
+            self.order = order;
+        }
+    }
+
     /// Follows a command.
     pub fn apply(&mut self, command: LayoutCommand) {
         match command {
+            LayoutCommand::Fold(name, switch) => switch.apply(&mut self.folded[name as usize]),
+            LayoutCommand::Arrange(name, place) => self.arrange(name, place),
+            LayoutCommand::Width(side, points) => self.widths[side as usize] = points,
+            LayoutCommand::Usual => {
+                let Self { order, left, widths, folded, .. } = Self::default();
+                (self.order, self.left) = (order, left);
+                (self.widths, self.folded) = (widths, folded);
+            }
+            LayoutCommand::Mouse(preset) => self.mouse = preset,
             LayoutCommand::Panel(name, switch) => switch.apply(&mut self.open[name as usize]),
             LayoutCommand::Theme(ThemeName::Dark) => self.dark = true,
             LayoutCommand::Theme(ThemeName::Light) => self.dark = false,
@@ -380,6 +542,36 @@ impl Layout {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn panels_are_put_elsewhere_and_back() {
+        let mut layout = Layout::default();
+        let side = |layout: &Layout, side| layout.side(side).collect::<Vec<_>>();
+        use PanelName::{Cloud, Filter, Image, Path, Scene, Statistics};
+        use WindowSide::{Left, Right};
+        let usual = layout.clone();
+        let mut run = |command: &str| {
+            let command = command.parse().expect(command);
+            if let crate::command::Command::Layout(command) = command {
+                layout.apply(command);
+            }
+            layout.clone()
+        };
+        assert_eq!(side(&run("arrange scene up"), Left), [Cloud, Scene, Filter], "up");
+        assert_eq!(run("arrange cloud up"), run("arrange cloud up"), "it is the first");
+        assert_eq!(side(&run("arrange cloud down"), Left), [Scene, Cloud, Filter], "down");
+        assert_eq!(run("arrange filter down").order, run("arrange filter down").order, "the last");
+        let moved = run("arrange statistics before cloud");
+        assert_eq!(side(&moved, Left), [Scene, Statistics, Cloud, Filter], "to the other side");
+        assert_eq!(side(&moved, Right)[..2], [Image, Path], "the others stay");
+        // What is closed is passed over.
+        run("panel statistics off");
+        assert_eq!(side(&run("arrange scene down"), Left)[..3], [Statistics, Cloud, Scene], "down");
+        run("panel statistics on");
+        run("width right 500");
+        assert!(run("fold image on").is_folded(Image), "folded");
+        assert_eq!(run("usual"), usual, "as it was");
+    }
 
     #[test]
     fn brightness_follows_the_scene_until_it_is_chosen() {

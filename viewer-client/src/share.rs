@@ -9,9 +9,10 @@ use thiserror::Error;
 
 use crate::camera::ViewCamera;
 use crate::command::{
-    CameraCommand, CloudCommand, Command, CommandError, FilterCommand, ImageCommand, SceneCommand,
-    Switch,
+    CameraCommand, CloudCommand, Command, CommandError, FilterCommand, ImageCommand, PathCommand,
+    SceneCommand, Switch,
 };
+use crate::selection::Selection;
 use crate::settings::Settings;
 
 /// How links begin.
@@ -51,14 +52,19 @@ pub struct Shared {
 }
 
 /// The link that restores what is seen now.
-pub fn link(address: &str, camera: &ViewCamera, settings: &Settings) -> String {
-    let commands = view(camera, settings);
+pub fn link(
+    address: &str,
+    camera: &ViewCamera,
+    settings: &Settings,
+    selection: Option<&Selection>,
+) -> String {
+    let commands = view(camera, settings, selection);
     let texts: Vec<String> = commands.iter().map(ToString::to_string).collect();
     format!("{SCHEME}{address}#{}", utf8_percent_encode(&texts.join(";"), PLAIN))
 }
 
 /// The commands that restore what is seen now.
-fn view(camera: &ViewCamera, settings: &Settings) -> Vec<Command> {
+fn view(camera: &ViewCamera, settings: &Settings, selection: Option<&Selection>) -> Vec<Command> {
     let Settings { cloud, scene, filter, image, .. } = settings;
     let mut commands = vec![
         Command::Camera(CameraCommand::Place(camera.place())),
@@ -69,6 +75,7 @@ fn view(camera: &ViewCamera, settings: &Settings) -> Vec<Command> {
         Command::Scene(SceneCommand::Opacity(scene.opacity)),
         Command::Scene(SceneCommand::Clip(scene.clip)),
         Command::Scene(SceneCommand::Cut(scene.cut)),
+        Command::Image(ImageCommand::Channel(image.channel)),
         Command::Image(ImageCommand::Tone(image.tone)),
     ];
     if !image.layer.compares() {
@@ -78,13 +85,24 @@ fn view(camera: &ViewCamera, settings: &Settings) -> Vec<Command> {
         commands.push(Command::Image(ImageCommand::Exposure(image.exposure)));
     }
     let mut wanted = vec![FilterCommand::Clear];
-    if !filter.text.is_empty() {
-        wanted.push(FilterCommand::Set(filter.text.clone()));
+    if filter.kept.iter().any(|kept| kept.on) && !filter.off {
+        // Names are the user's own; what they stand for is not.
+        wanted.push(FilterCommand::Set(filter.wanted()));
+    } else {
+        if !filter.text.is_empty() {
+            wanted.push(FilterCommand::Set(filter.text.clone()));
+        }
+        wanted.extend(filter.selectors.iter().map(|sphere| FilterCommand::Add(*sphere)));
+        wanted.extend(filter.inverted.then_some(FilterCommand::Invert(Switch::On)));
+        wanted.extend(filter.off.then_some(FilterCommand::Enable(Switch::Off)));
     }
-    wanted.extend(filter.selectors.iter().map(|sphere| FilterCommand::Add(*sphere)));
-    wanted.extend(filter.inverted.then_some(FilterCommand::Invert(Switch::On)));
-    wanted.extend(filter.off.then_some(FilterCommand::Enable(Switch::Off)));
     commands.extend(wanted.into_iter().map(Command::Filter));
+    let shown = selection.map(|selection| {
+        let Selection { header, vertices, .. } = selection;
+        PathCommand::Show(Box::new(*header), vertices.clone())
+    });
+    // The vertex that is looked at is where the camera is already.
+    commands.extend(shown.map(Command::Path));
     commands
 }
 
@@ -116,10 +134,12 @@ fn only_looks(command: &Command) -> bool {
         Command::Cloud(command) => {
             matches!(command, CloudCommand::Color(_) | CloudCommand::Marks(_))
         }
+        Command::Path(command) => matches!(command, PathCommand::Show(..)),
         Command::Image(command) => matches!(
             command,
             ImageCommand::Exposure(_)
                 | ImageCommand::Tone(_)
+                | ImageCommand::Channel(_)
                 | ImageCommand::Show(_)
                 | ImageCommand::Zoom(_)
                 | ImageCommand::Look(_)
@@ -146,11 +166,16 @@ mod tests {
         camera.apply(CameraCommand::Orbit(33.5, -12.25));
         // A semicolon in a name would end the command.
         settings.filter.text = settings.filter.text.replace(';', ",");
-        let text = link("127.0.0.1:50061", &camera, &settings);
+        let path = crate::synthetic::batch(&[&[[1.0, 2.5, -3.0], [4.0, 6.0, 1e-7]]]);
+        let mut reader = path.reader();
+        let path = reader.next().expect("a path");
+        let selection = Selection::new(path.header, path.vertices.to_vec());
+        let text = link("127.0.0.1:50061", &camera, &settings, Some(&selection));
         assert!(text.is_ascii() && !text.contains(' '), "fit for a chat: {text}");
         let shared = read(&text).expect("our own link");
         assert_eq!(shared.address, "127.0.0.1:50061", "the daemon");
         let (mut other, mut restored) = (ViewCamera::default(), Settings::default());
+        let mut selected = None;
         for command in shared.commands {
             match command {
                 Command::Camera(command) => other.apply(command),
@@ -158,11 +183,20 @@ mod tests {
                 Command::Scene(command) => restored.scene.apply(command),
                 Command::Image(command) => restored.image.apply(&command),
                 Command::Filter(command) => restored.filter.apply(&command),
+                Command::Path(PathCommand::Show(header, vertices)) => {
+                    selected = Some(Selection::new(*header, vertices));
+                }
                 other => panic!("{other}"),
             }
         }
         assert_eq!(other, camera, "the eye, to the last bit");
-        assert_eq!(restored, settings, "and what it sees");
+        assert_eq!(restored, settings, "what it sees");
+        assert_eq!(selected, Some(selection), "and the path that is selected, to the last bit");
+        settings.filter.apply(&FilterCommand::Keep("mine".to_owned()));
+        settings.filter.apply(&FilterCommand::Use("mine".to_owned(), Switch::On));
+        let shared = read(&link("a:1", &camera, &settings, None)).expect("our own link");
+        let wanted = Command::Filter(FilterCommand::Set(settings.filter.wanted()));
+        assert!(shared.commands.contains(&wanted), "kept filters travel as text");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What is known of the daemon and of the way to it.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use common::{FilterReply, Role, Statistics, Welcome};
 
@@ -62,6 +62,8 @@ pub struct Status {
     pub filter: Option<FilterReply>,
     /// Who steers, and what the explorer does.
     pub steering: Steering,
+    /// How long the daemon took to answer a question last, way and back.
+    pub latency: Option<Duration>,
     /// The newest word to the user.
     pub notice: Option<Notice>,
 }
@@ -82,6 +84,7 @@ impl Status {
             reconnects: 0,
             filter: None,
             steering: Steering::default(),
+            latency: None,
             notice: None,
         }
     }
@@ -111,6 +114,7 @@ impl Status {
         self.welcome = Some(welcome);
         self.statistics = None;
         self.filter = None;
+        self.latency = None;
         self.steering.clear();
         self.mutation_history.clear();
         self.trends.clear();

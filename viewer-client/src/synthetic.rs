@@ -3,8 +3,8 @@
 use std::collections::VecDeque;
 
 use common::{
-    BatchBuilder, BatchLimits, Camera, CameraPose, Event, FilmTile, MaterialInfo, PathBatch,
-    PathHeader, Rgb, Role, SceneFrame, SceneMesh, VertexKind, VertexRecord, Welcome,
+    BatchBuilder, BatchLimits, Camera, CameraPose, Event, FilmTile, FilterObject, MaterialInfo,
+    PathBatch, PathHeader, Rgb, Role, SceneFrame, SceneMesh, VertexKind, VertexRecord, Welcome,
 };
 use glam::DVec3;
 use proto::ReceivedScene;
@@ -64,6 +64,7 @@ pub(crate) fn mesh() -> SceneMesh {
         triangle_materials: vec![0, 0, 1],
         primitives: vec![0, 1, 2],
         materials: vec![material("wall", Rgb::BLACK), material("lamp", Rgb::WHITE)],
+        objects: vec![FilterObject { name: "room".to_owned(), primitives: 0..2 }],
         camera: Some(camera()),
     }
 }

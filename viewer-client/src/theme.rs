@@ -13,6 +13,27 @@ pub const GOOD: Color32 = Color32::from_rgb(88, 196, 120);
 pub const BUSY: Color32 = Color32::from_rgb(238, 178, 72);
 /// Something is wrong.
 pub const BAD: Color32 = Color32::from_rgb(236, 96, 88);
+
+/// [`GOOD`] as a text.
+pub fn good(dark: bool) -> Color32 {
+    if dark { GOOD } else { Color32::from_rgb(20, 112, 52) }
+}
+
+/// [`BUSY`] as a text.
+pub fn busy(dark: bool) -> Color32 {
+    if dark { BUSY } else { Color32::from_rgb(138, 84, 0) }
+}
+
+/// [`BAD`] as a text.
+pub fn bad(dark: bool) -> Color32 {
+    if dark { BAD } else { Color32::from_rgb(176, 32, 28) }
+}
+
+/// [`ACCENT`] as a text.
+pub fn accent(dark: bool) -> Color32 {
+    if dark { ACCENT } else { Color32::from_rgb(24, 88, 190) }
+}
+
 /// A kind of selectors: green where paths start, red where they end, yellow for any, white for all.
 pub fn selector_color(kind: SelectorKind) -> Color32 {
     match kind {

@@ -7,7 +7,7 @@ use common::{Attendee, Diagnostics, FilterCounts};
 use crate::camera::ViewCamera;
 use crate::command::PanelName;
 use crate::film::Film;
-use crate::imaging::Reference;
+use crate::imaging::{FlipMap, Reference};
 use crate::model::Model;
 use crate::playback::Playback;
 use crate::selection::{Names, Selection};
@@ -31,6 +31,8 @@ pub struct World<'a> {
     pub film: &'a Film,
     /// What the image is compared with.
     pub reference: Option<&'a Reference>,
+    /// How different it looks from that, where that was asked for.
+    pub flip: Option<&'a FlipMap>,
     /// The path that is looked at.
     pub selection: Option<&'a Selection>,
     /// The step of the explorer that is shown, and its number where it is not the newest.

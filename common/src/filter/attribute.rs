@@ -48,6 +48,21 @@ pub enum Comparison {
 }
 
 impl Attribute {
+    /// All of them.
+    pub const ALL: [Self; 11] = [
+        Self::Edges,
+        Self::Length,
+        Self::Luminance,
+        Self::Acceptance,
+        Self::Dwell,
+        Self::Chain,
+        Self::Epoch,
+        Self::Step,
+        Self::Diffuse,
+        Self::Glossy,
+        Self::Specular,
+    ];
+
     /// All of them, with their names and what else they are called.
     pub(super) const NAMES: [(Self, &'static str, Option<&'static str>); 11] = [
         (Self::Edges, "edges", Some("depth")),
@@ -134,6 +149,10 @@ pub(super) fn is_light(vertex: &VertexRecord) -> bool {
 }
 
 impl Comparison {
+    /// All of them.
+    pub const ALL: [Self; 6] =
+        [Self::AtLeast, Self::AtMost, Self::Equal, Self::Greater, Self::Less, Self::NotEqual];
+
     /// All of them, with their signs; a sign stands before those that it begins with.
     pub(super) const SIGNS: [(Self, &'static str); 6] = [
         (Self::Equal, "=="),

@@ -22,13 +22,15 @@ const MAX_VERTEX_TESTS: usize = 256;
 #[derive(Clone, Debug)]
 pub struct CompiledFilter {
     text: String,
-    root: Node,
-    leaves: Vec<CompiledLeaf>,
+    pub(super) root: Node,
+    pub(super) leaves: Vec<CompiledLeaf>,
     leaf_texts: Vec<String>,
+    /// Scene units that make one of the file.
+    pub(super) scale: f64,
 }
 
 #[derive(Clone, Debug)]
-enum Node {
+pub(super) enum Node {
     Constant(bool),
     Not(Box<Self>),
     And(Vec<Self>),
@@ -37,7 +39,7 @@ enum Node {
 }
 
 #[derive(Clone, Debug)]
-enum CompiledLeaf {
+pub(super) enum CompiledLeaf {
     Vertex { place: Place, test: CompiledTest },
     Segment { place: Place, volume: Volume },
     LightPath(Box<LightPathAutomaton>),
@@ -48,7 +50,7 @@ enum CompiledLeaf {
 }
 
 #[derive(Clone, Debug)]
-enum CompiledTest {
+pub(super) enum CompiledTest {
     Inside(Volume),
     /// One flag a material.
     Material(Vec<bool>),
@@ -67,7 +69,8 @@ impl Filter {
         let mut compiler = Compiler { scene, leaves: Vec::new(), leaf_texts: Vec::new() };
         let root = compiler.node(self, 0)?;
         let Compiler { leaves, leaf_texts, .. } = compiler;
-        Ok(CompiledFilter { text: self.to_string(), root, leaves, leaf_texts })
+        let scale = scene.frame.scale;
+        Ok(CompiledFilter { text: self.to_string(), root, leaves, leaf_texts, scale })
     }
 }
 
@@ -284,12 +287,12 @@ fn of_place<T>(place: Place, all: &[T], inner: &[T], holds: impl Fn(&T) -> bool)
     }
 }
 
-fn point(vertex: &VertexRecord) -> DVec3 {
+pub(super) fn point(vertex: &VertexRecord) -> DVec3 {
     Vec3::from_array(vertex.position).as_dvec3()
 }
 
 impl CompiledTest {
-    fn holds(&self, vertex: &VertexRecord) -> bool {
+    pub(super) fn holds(&self, vertex: &VertexRecord) -> bool {
         let on = |flags: &[bool]| flags.get(usize::from(vertex.material)).copied().unwrap_or(false);
         match self {
             Self::Inside(volume) => volume.contains(point(vertex)),

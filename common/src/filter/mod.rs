@@ -9,6 +9,7 @@ mod attribute;
 mod compile;
 mod error;
 mod lpe;
+mod miss;
 mod number;
 mod parse;
 mod print;
@@ -22,6 +23,7 @@ pub use attribute::{Attribute, Comparison};
 pub use compile::{CompiledFilter, MAX_LEAVES};
 pub use error::FilterError;
 pub use lpe::LightPathExpression;
+pub use miss::{NearestMiss, Shortfall};
 pub use parse::MAX_FILTER_BYTES;
 pub use scene::{FilterObject, FilterScene};
 pub use selector::{Selector, SelectorKind};
@@ -113,6 +115,9 @@ pub enum Place {
 }
 
 impl Place {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Start, Self::End, Self::Any, Self::All];
+
     pub(super) const NAMES: [(Self, &'static str); 4] =
         [(Self::Start, "start"), (Self::End, "end"), (Self::Any, "any"), (Self::All, "all")];
 }
@@ -146,6 +151,14 @@ pub enum Named {
 }
 
 impl Named {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Object, Self::Material, Self::Light];
+
+    /// Its word in a filter's text.
+    pub fn name(self) -> &'static str {
+        Self::NAMES.iter().find(|(kind, _)| *kind == self).map_or("", |&(_, name)| name)
+    }
+
     pub(super) const NAMES: [(Self, &'static str); 3] =
         [(Self::Object, "object"), (Self::Material, "material"), (Self::Light, "light")];
 }
@@ -170,6 +183,22 @@ pub enum VertexClass {
 }
 
 impl VertexClass {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Diffuse,
+        Self::Glossy,
+        Self::Specular,
+        Self::Reflect,
+        Self::Refract,
+        Self::Light,
+        Self::Camera,
+    ];
+
+    /// Its word in a filter's text.
+    pub fn name(self) -> &'static str {
+        Self::NAMES.iter().find(|(class, _)| *class == self).map_or("", |&(_, name)| name)
+    }
+
     pub(super) const NAMES: [(Self, &'static str); 7] = [
         (Self::Diffuse, "diffuse"),
         (Self::Glossy, "glossy"),

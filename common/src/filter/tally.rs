@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::CompiledFilter;
-use crate::PathHeader;
+use super::miss::Lack;
+use super::{CompiledFilter, NearestMiss};
+use crate::{PathHeader, VertexRecord};
 
 /// Chains are told apart up to this many; more share an entry.
 const MAX_CHAINS: u32 = 1 << 14;
@@ -31,6 +32,8 @@ pub struct FilterCounts {
     pub energy_error: f64,
     /// For each condition, how many of the paths seen meet it alone.
     pub conditions: Vec<u64>,
+    /// The path that came nearest, while none matches.
+    pub nearest: Option<NearestMiss>,
 }
 
 /// Counts what a filter sees, chain by chain.
@@ -42,6 +45,7 @@ pub struct FilterTally {
     conditions: Vec<u64>,
     /// Steps of matching paths and of all paths.
     chains: BTreeMap<u32, [f64; 2]>,
+    nearest: Option<(Lack, NearestMiss)>,
 }
 
 impl FilterTally {
@@ -64,6 +68,24 @@ impl FilterTally {
         *matched += if matches { weight } else { 0.0 };
     }
 
+    /// Looks whether a path that does not match came nearer than those before, as long as none has
+    /// matched.
+    pub fn count_miss(
+        &mut self,
+        filter: &CompiledFilter,
+        header: &PathHeader,
+        path: &[VertexRecord],
+        conditions: u64,
+    ) {
+        if self.matched > 0 {
+            return;
+        }
+        let lack = filter.lack(header, path, conditions);
+        if self.nearest.as_ref().is_none_or(|(least, _)| lack.is_less_than(*least)) {
+            self.nearest = Some((lack, filter.miss(header, path, conditions)));
+        }
+    }
+
     /// The counts so far.
     pub fn counts(&self) -> FilterCounts {
         let [matched_steps, seen_steps] = self
@@ -80,6 +102,7 @@ impl FilterTally {
             energy_share,
             energy_error: self.error_of(energy_share, seen_steps),
             conditions: self.conditions.clone(),
+            nearest: self.nearest.as_ref().filter(|_| self.matched == 0).map(|n| n.1.clone()),
         }
     }
 

@@ -1,6 +1,8 @@
 //! Filters, which travel as text, and what is said of them.
 
-use common::{FilterCounts, FilterError, FilterReply, MAX_FILTER_BYTES, MAX_LEAVES};
+use common::{
+    FilterCounts, FilterError, FilterReply, MAX_FILTER_BYTES, MAX_LEAVES, NearestMiss, Shortfall,
+};
 
 use super::{WireError, check};
 use crate::v1;
@@ -85,7 +87,35 @@ impl From<&FilterCounts> for v1::FilterCounts {
             energy_share: check::known_or_zero(counts.energy_share),
             energy_error: check::known_or_zero(counts.energy_error),
             conditions: counts.conditions.clone(),
+            nearest: counts.nearest.as_ref().map(Into::into),
         }
+    }
+}
+
+impl From<&NearestMiss> for v1::NearestMiss {
+    fn from(miss: &NearestMiss) -> Self {
+        let failed = miss.failed.iter().map(|&Shortfall { condition, by }| v1::Shortfall {
+            condition,
+            by: by.filter(|by| by.is_finite()),
+        });
+        Self { path: Some(miss.path.into()), asked: miss.asked, failed: failed.collect() }
+    }
+}
+
+impl TryFrom<v1::NearestMiss> for NearestMiss {
+    type Error = WireError;
+
+    fn try_from(wire: v1::NearestMiss) -> Result<Self, WireError> {
+        check::length("nearest_miss.failed", wire.failed.len(), MAX_LEAVES)?;
+        let failed = wire.failed.into_iter().map(|v1::Shortfall { condition, by }| {
+            let by = by.map(|by| check::not_negative("shortfall.by", by)).transpose()?;
+            Ok(Shortfall { condition, by })
+        });
+        Ok(Self {
+            path: check::required("nearest_miss.path", wire.path)?.into(),
+            asked: wire.asked,
+            failed: failed.collect::<Result<_, WireError>>()?,
+        })
     }
 }
 
@@ -103,6 +133,7 @@ impl TryFrom<v1::FilterCounts> for FilterCounts {
             energy_share: check::finite("filter_counts.energy_share", wire.energy_share)?,
             energy_error: check::finite("filter_counts.energy_error", wire.energy_error)?,
             conditions: wire.conditions,
+            nearest: wire.nearest.map(TryInto::try_into).transpose()?,
         })
     }
 }

@@ -1,6 +1,6 @@
 //! The scene, cut into chunks and put together again.
 
-use common::{MaterialInfo, SceneFrame, SceneMesh};
+use common::{FilterObject, MaterialInfo, SceneFrame, SceneMesh};
 
 use super::{WireError, camera, check, column};
 use crate::v1;
@@ -14,7 +14,9 @@ const TRIANGLES_PER_CHUNK: usize = 16 << 10;
 const MATERIALS_PER_CHUNK: usize = 1 << 10;
 /// Most materials; triangles refer to them by two bytes.
 const MAX_MATERIALS: u32 = 1 << 16;
-/// Most vertices and triangles that a viewer accepts.
+/// Objects in a chunk: less than 300 bytes each.
+const OBJECTS_PER_CHUNK: usize = 1 << 10;
+/// Most vertices, triangles and objects that a viewer accepts.
 const MAX_ELEMENTS: u32 = 1 << 26;
 
 /// The scene as chunks below 1 MiB, cut as they are taken.
@@ -31,6 +33,7 @@ pub fn scene_chunks<'a>(
         material_count: mesh.materials.len() as u32,
         vertex_count: mesh.positions.len() as u32,
         triangle_count: mesh.triangles.len() as u32,
+        object_count: mesh.objects.len() as u32,
     };
     let materials = mesh.materials.chunks(MATERIALS_PER_CHUNK).map(|part| {
         Part::Materials(v1::SceneMaterials { materials: part.iter().map(Into::into).collect() })
@@ -56,8 +59,12 @@ pub fn scene_chunks<'a>(
                 primitive: column::encode(primitives),
             })
         });
+    let objects = mesh.objects.chunks(OBJECTS_PER_CHUNK).map(|part| {
+        Part::Objects(v1::SceneObjects { objects: part.iter().map(Into::into).collect() })
+    });
     std::iter::once(Part::Header(header))
         .chain(materials)
+        .chain(objects)
         .chain(vertices)
         .chain(triangles)
         .map(|part| v1::SceneChunk { part: Some(part) })
@@ -105,6 +112,12 @@ impl SceneAssembler {
                 }
                 complete_at_most(mesh.materials.len(), header.material_count)?;
             }
+            Part::Objects(part) => {
+                for object in part.objects {
+                    mesh.objects.push(object.try_into()?);
+                }
+                complete_at_most(mesh.objects.len(), header.object_count)?;
+            }
             Part::Vertices(part) => {
                 let count = part.position.len() / 12;
                 mesh.positions.extend(column::decode::<[f32; 3]>(
@@ -144,7 +157,8 @@ impl SceneAssembler {
         }
         let whole = mesh.materials.len() == header.material_count as usize
             && mesh.positions.len() == header.vertex_count as usize
-            && mesh.triangles.len() == header.triangle_count as usize;
+            && mesh.triangles.len() == header.triangle_count as usize
+            && mesh.objects.len() == header.object_count as usize;
         if !whole {
             return Err(WireError::Scene("it is shorter than its header says"));
         }
@@ -162,6 +176,7 @@ impl SceneAssembler {
         check::within("scene.material_count", header.material_count, 0, MAX_MATERIALS)?;
         check::within("scene.vertex_count", header.vertex_count, 0, MAX_ELEMENTS)?;
         check::within("scene.triangle_count", header.triangle_count, 0, MAX_ELEMENTS)?;
+        check::within("scene.object_count", header.object_count, 0, MAX_ELEMENTS)?;
         self.header = Some(header);
         Ok(())
     }
@@ -186,6 +201,29 @@ fn check_mesh(mesh: &SceneMesh) -> Result<(), WireError> {
         return Err(WireError::Scene("a triangle names a material that is not there"));
     }
     Ok(())
+}
+
+impl From<&FilterObject> for v1::SceneObject {
+    fn from(object: &FilterObject) -> Self {
+        Self {
+            name: check::cut(&object.name, check::MAX_NAME),
+            first_primitive: object.primitives.start,
+            primitive_count: object.primitives.len() as u32,
+        }
+    }
+}
+
+impl TryFrom<v1::SceneObject> for FilterObject {
+    type Error = WireError;
+
+    fn try_from(wire: v1::SceneObject) -> Result<Self, WireError> {
+        let end = wire.first_primitive.checked_add(wire.primitive_count);
+        let end = end.ok_or(WireError::Scene("an object has shapes beyond the last one"))?;
+        Ok(Self {
+            name: check::text("object.name", wire.name, check::MAX_NAME)?,
+            primitives: wire.first_primitive..end,
+        })
+    }
 }
 
 impl From<&MaterialInfo> for v1::Material {

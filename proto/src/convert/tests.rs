@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use common::{
     BatchBuilder, BatchOrigin, Camera, CameraPose, ChainId, ChainTotals, Diagnostics, Event,
-    FailureCount, FilmTile, FilterCounts, FilterError, FilterReply, Gap, MAX_FILTER_BYTES,
-    MaterialInfo, PathBatch, PathHeader, PathId, Rgb, Role, SceneFrame, SceneMesh, Statistics,
-    StrategyId, StrategyStatistics, TileGrid, TileMaps, UNKNOWN, VertexKind, VertexRecord, Welcome,
+    FailureCount, FilmTile, FilterCounts, FilterError, FilterObject, FilterReply, Gap,
+    MAX_FILTER_BYTES, MaterialInfo, NearestMiss, PathBatch, PathHeader, PathId, Rgb, Role,
+    SceneFrame, SceneMesh, Shortfall, Statistics, StrategyId, StrategyStatistics, TileGrid,
+    TileMaps, UNKNOWN, VertexKind, VertexRecord, Welcome,
 };
 use glam::DVec3;
 use proptest::prelude::*;
@@ -83,6 +84,14 @@ fn statistics() -> Statistics {
             energy_share: 0.0125,
             energy_error: 0.001,
             conditions: vec![500, 20],
+            nearest: Some(NearestMiss {
+                path: PathId { chain: ChainId(3), epoch: 1, step: 77 },
+                asked: 2,
+                failed: vec![
+                    Shortfall { condition: 0, by: Some(0.2) },
+                    Shortfall { condition: 1, by: None },
+                ],
+            }),
         },
         diagnostics: Some(Arc::new(diagnostics())),
     }
@@ -128,6 +137,7 @@ fn mesh(triangles: u32) -> SceneMesh {
         triangle_materials: (0..count).map(|i| (i % 2) as u16).collect(),
         primitives: (0..triangles).collect(),
         materials: vec![material("wall"), material("floor")],
+        objects: vec![FilterObject { name: "strip".to_owned(), primitives: 0..triangles }],
         camera: Some(camera()),
     }
 }

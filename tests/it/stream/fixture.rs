@@ -49,7 +49,7 @@ pub(super) fn session_info() -> SessionInfo {
         role: Role::Observer,
         resume: String::new(),
     };
-    SessionInfo { welcome, mesh: strip(60_000, camera), objects: Vec::new() }
+    SessionInfo { welcome, mesh: strip(60_000, camera) }
 }
 
 /// A strip of triangles.
@@ -69,6 +69,7 @@ pub(super) fn strip(triangles: u32, camera: Camera) -> SceneMesh {
         triangle_materials: vec![0; count],
         primitives: (0..triangles).collect(),
         materials: vec![white],
+        objects: Vec::new(),
         camera: Some(camera),
     }
 }

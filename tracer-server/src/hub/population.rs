@@ -163,6 +163,9 @@ impl Population {
             }
         };
         self.tally.count(&path.header, conditions, wanted);
+        if let Some(filter) = self.filter.as_ref().filter(|_| !wanted) {
+            self.tally.count_miss(filter, &path.header, path.vertices, conditions);
+        }
         let weight = if wanted {
             let chain = path.header.id.chain.0;
             self.sampler.draw(chain, path.header.weight)

@@ -18,6 +18,7 @@ impl Scene {
     pub fn preview_mesh(&self) -> SceneMesh {
         let mut mesh = SceneMesh {
             materials: self.material_infos().collect(),
+            objects: self.objects.clone(),
             camera: Some(self.camera),
             ..SceneMesh::default()
         };

@@ -16,7 +16,7 @@ use std::pin::Pin;
 use std::sync::Arc;
 use std::time::Duration;
 
-use common::{FilterObject, FilterScene, Role, SceneMesh, Welcome};
+use common::{FilterScene, Role, SceneMesh, Welcome};
 use proto::v1::tracer_server::{Tracer, TracerServer};
 use proto::{FILE_DESCRIPTOR_SET, MAX_MESSAGE_BYTES, v1};
 use thiserror::Error;
@@ -64,10 +64,8 @@ const SHUTTING_DOWN: &str = "the daemon is shutting down";
 pub struct SessionInfo {
     /// The welcome; session and role are filled in for each viewer.
     pub welcome: Welcome,
-    /// The scene for drawing.
+    /// The scene for drawing, with the names that filters may use.
     pub mesh: SceneMesh,
-    /// The objects that filters may name.
-    pub objects: Vec<FilterObject>,
 }
 
 impl SessionInfo {
@@ -79,7 +77,7 @@ impl SessionInfo {
             materials: materials.iter().map(|material| material.name.clone()).collect(),
             background: FilterScene::background_among(materials),
             strategies: self.welcome.strategies.clone(),
-            objects: self.objects.clone(),
+            objects: self.mesh.objects.clone(),
         }
     }
 }

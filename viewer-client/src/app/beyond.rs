@@ -3,6 +3,7 @@
 use super::Viewer;
 use crate::command::DeskCommand;
 use crate::connection::Peer;
+use crate::panel;
 use crate::share;
 use crate::status::Status;
 
@@ -16,7 +17,9 @@ impl Viewer {
                 }
             }
             DeskCommand::Share => {
-                let link = share::link(&self.status.address, &self.camera, &self.settings);
+                let selection = self.selection.as_ref();
+                let link =
+                    share::link(&self.status.address, &self.camera, &self.settings, selection);
                 let said = if self.status.embedded {
                     "Copied a link to this view; it works while this viewer is open."
                 } else {
@@ -24,6 +27,17 @@ impl Viewer {
                 };
                 self.status.say(Ok(said.to_owned()));
                 self.desk.copy(link);
+            }
+            DeskCommand::Copy(source) => {
+                let text = panel::text_of(&self.world(), source);
+                self.status.say(if text.trim().is_empty() {
+                    Err("There is nothing to copy here yet.".to_owned())
+                } else {
+                    Ok(format!("Copied {} lines.", text.lines().count()))
+                });
+                if !text.trim().is_empty() {
+                    self.desk.copy(text);
+                }
             }
             DeskCommand::Screenshot(file) if self.desk.connect.is_some() => {
                 self.desk.photograph(&file);

@@ -1,6 +1,8 @@
 //! The filter applied to the paths that the viewer holds.
 
-use common::{CompiledFilter, Filter, FilterScene, FilterTally, SceneFrame};
+use common::{
+    CompiledFilter, Filter, FilterScene, FilterTally, PathHeader, SceneFrame, VertexRecord,
+};
 
 use super::Viewer;
 
@@ -23,8 +25,7 @@ impl Viewer {
             let mut tally = FilterTally::new(0, filter);
             for page in self.store.pages() {
                 for path in page.paths() {
-                    let conditions = filter.conditions(&path.header, page.vertices(path));
-                    tally.count(&path.header, conditions, filter.wants(conditions));
+                    count(&mut tally, filter, &path.header, page.vertices(path));
                 }
             }
             self.counted = Some(tally.counts());
@@ -34,19 +35,34 @@ impl Viewer {
     /// The filter bound to what is known of the scene; `None` where that is not enough.
     fn compiled(&self) -> Option<CompiledFilter> {
         let welcome = self.status.welcome.as_ref();
-        let materials =
-            self.model.as_ref().map(|m| m.mesh.materials.as_slice()).unwrap_or_default();
+        let mesh = self.model.as_ref().map(|model| &model.mesh);
+        let materials = mesh.map(|mesh| mesh.materials.as_slice()).unwrap_or_default();
         let unknown = SceneFrame { centre: glam::DVec3::ZERO, scale: 1.0 };
         let scene = FilterScene {
             frame: welcome.map_or(unknown, |welcome| welcome.frame),
             materials: materials.iter().map(|material| material.name.clone()).collect(),
             background: FilterScene::background_among(materials),
             strategies: welcome.map(|w| w.strategies.clone()).unwrap_or_default(),
-            objects: Vec::new(),
+            objects: mesh.map(|mesh| mesh.objects.clone()).unwrap_or_default(),
         };
         let text = self.settings.filter.wanted();
         let text = if text.is_empty() { "true" } else { text.as_str() };
         Filter::parse(text).ok()?.compile(&scene).ok()
+    }
+}
+
+/// Counts one path, and how near it came.
+fn count(
+    tally: &mut FilterTally,
+    filter: &CompiledFilter,
+    header: &PathHeader,
+    vertices: &[VertexRecord],
+) {
+    let conditions = filter.conditions(header, vertices);
+    let wanted = filter.wants(conditions);
+    tally.count(header, conditions, wanted);
+    if !wanted {
+        tally.count_miss(filter, header, vertices, conditions);
     }
 }
 
@@ -75,7 +91,8 @@ mod tests {
         assert_eq!(run("filter invert on"), (1, 2), "the other one");
         assert_eq!(run("filter set any on material \"wall\""), (0, 2), "names are known");
         assert_eq!(run("filter clear"), (2, 2), "all match again");
-        assert_eq!(run("filter set any on object \"box\""), (0, 0), "only the daemon knows");
+        assert_eq!(run("filter set any on object \"room\""), (2, 2), "objects, too");
+        assert_eq!(run("filter set any on object \"box\""), (0, 0), "there is no such thing");
     }
 
     #[test]

@@ -160,13 +160,19 @@ impl Viewer {
             Some(layout) => self.settings.layout.clone_from(layout),
             None => self.settings.layout.hint = true,
         }
+        self.settings.filter.kept.clone_from(&habits.filters);
         self.desk.habits = habits;
         self.desk.connect = Some(connect);
     }
 
     /// What the user is used to by now.
     pub fn habits(&self) -> Habits {
-        Habits { layout: Some(self.settings.layout.clone()), ..self.desk.habits.clone() }
+        let mut filters = self.settings.filter.kept.clone();
+        for kept in &mut filters {
+            kept.on = false;
+        }
+        let layout = Some(self.settings.layout.clone());
+        Habits { filters, layout, ..self.desk.habits.clone() }
     }
 
     /// Follows the commands of a script. Those for the camera wait for the scene, which would
@@ -175,7 +181,8 @@ impl Viewer {
     pub fn run_script(&mut self, commands: Vec<Command>) {
         for command in commands {
             let must_wait = match command {
-                Command::Camera(_) => self.model.is_none(),
+                Command::Camera(_) | Command::Path(PathCommand::Show(..)) => self.model.is_none(),
+                Command::Path(PathCommand::Vertex(_)) => self.selection.is_none(),
                 Command::Order(_) | Command::Path(_) => self.store.is_empty(),
                 Command::Image(ImageCommand::Save(_) | ImageCommand::Tev(_)) => {
                     self.darkroom.film.size() == [0, 0]
@@ -311,6 +318,7 @@ impl Viewer {
             self.store.note_gap(delivery.gap.paths);
         }
         self.waiting.extend(delivery.batches);
+        self.status.latency = delivery.latency.or(self.status.latency);
         if let Some(state) = delivery.state {
             self.status.link = state;
         }
@@ -416,6 +424,9 @@ impl Viewer {
             Command::Desk(command) => self.go_beyond(command),
             Command::Order(order) => self.send(order),
             Command::Path(PathCommand::Pick(aim)) => self.pick(aim),
+            Command::Path(PathCommand::Show(header, vertices)) => {
+                self.selection = Some(Selection::new(*header, vertices));
+            }
             Command::Path(PathCommand::Deselect) => self.selection = None,
             Command::Path(PathCommand::Stay(rank)) => self.select_stay(rank),
             Command::Path(PathCommand::Vertex(step)) => self.look_at_vertex(step),
@@ -468,13 +479,31 @@ impl Viewer {
         self.play_on(ui.ctx());
         let was_through = self.camera.is_through();
         let mut commands = Vec::new();
-        let world = World {
+        let mut panels = std::mem::take(&mut self.panels);
+        let world = self.world();
+        keys::pressed(ui.ctx(), &world, &mut commands);
+        panel::show(&mut panels, ui, &world, &mut commands);
+        self.panels = panels;
+        self.keep_time(ui.ctx());
+        if !commands.is_empty() {
+            ui.ctx().request_repaint();
+        }
+        for command in commands {
+            self.apply(command);
+        }
+        self.stale.aids |= self.camera.is_through() != was_through;
+    }
+
+    /// All that panels may read.
+    fn world(&self) -> World<'_> {
+        World {
             settings: &self.settings,
             camera: &self.camera,
             status: &self.status,
             store: &self.store,
             film: &self.darkroom.film,
             reference: self.darkroom.reference.as_ref(),
+            flip: self.darkroom.flip.as_ref(),
             selection: self.selection.as_ref(),
             moment: match &self.playback {
                 Some(playback) => playback.moment(),
@@ -486,17 +515,7 @@ impl Viewer {
             recent: &self.desk.habits.recent,
             model: self.model.as_ref(),
             now: Instant::now(),
-        };
-        keys::pressed(ui.ctx(), &world, &mut commands);
-        panel::show(&mut self.panels, ui, &world, &mut commands);
-        self.keep_time(ui.ctx());
-        if !commands.is_empty() {
-            ui.ctx().request_repaint();
         }
-        for command in commands {
-            self.apply(command);
-        }
-        self.stale.aids |= self.camera.is_through() != was_through;
     }
 
     /// Countdowns run by themselves.

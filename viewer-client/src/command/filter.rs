@@ -12,6 +12,9 @@ use super::words::{CommandError, Switch, Words};
 const FAR: f64 = 1e12;
 /// Most selectors at a time; the text of a filter has its own limits.
 pub const MOST_SELECTORS: u32 = 32;
+/// Most kept filters, and letters of their names.
+pub const MOST_KEPT: usize = 32;
+const LONGEST_NAME: usize = 40;
 
 /// What may be done to the filter. `docs/FILTERS.md` has the grammar of its text.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +37,16 @@ pub enum FilterCommand {
     Delete(u32),
     /// Removes every selector.
     DeleteAll,
+    /// Keeps text and selectors under a name.
+    Keep(String),
+    /// Whether the kept filter of this name holds, beside the others.
+    Use(String, Switch),
+    /// Whether the opposite of the kept filter of this name holds.
+    Reverse(String, Switch),
+    /// Makes the kept filter of this name the text, in the place of text and selectors.
+    Load(String),
+    /// Keeps the filter of this name no longer.
+    Forget(String),
 }
 
 impl FilterCommand {
@@ -100,6 +113,11 @@ pub(super) const FORMS: &[Form] = &[
     ("filter choose NUMBER", "show the handles of a selector"),
     ("filter delete NUMBER", "remove a selector"),
     ("filter bare", "remove every selector"),
+    ("filter keep NAME", "keep text and selectors under a name"),
+    ("filter use on|off|toggle NAME", "whether a kept filter holds, beside the others"),
+    ("filter reverse on|off|toggle NAME", "whether the opposite of a kept filter holds"),
+    ("filter load NAME", "write a kept filter into the text"),
+    ("filter forget NAME", "keep a filter no longer"),
 ];
 
 impl fmt::Display for FilterCommand {
@@ -116,6 +134,11 @@ impl fmt::Display for FilterCommand {
             Self::Choose(number) => write!(f, "choose {number}"),
             Self::Delete(number) => write!(f, "delete {number}"),
             Self::DeleteAll => write!(f, "bare"),
+            Self::Keep(name) => write!(f, "keep {name}"),
+            Self::Use(name, switch) => write!(f, "use {switch} {name}"),
+            Self::Reverse(name, switch) => write!(f, "reverse {switch} {name}"),
+            Self::Load(name) => write!(f, "load {name}"),
+            Self::Forget(name) => write!(f, "forget {name}"),
         }
     }
 }
@@ -142,8 +165,32 @@ pub(super) fn parse(words: &mut Words<'_>) -> Result<FilterCommand, CommandError
         "choose" => FilterCommand::Choose(words.count("NUMBER", NUMBER)?),
         "delete" => FilterCommand::Delete(words.count("NUMBER", NUMBER)?),
         "bare" => FilterCommand::DeleteAll,
+        "keep" => FilterCommand::Keep(name(words)?),
+        "use" => {
+            let switch = words.switch()?;
+            FilterCommand::Use(name(words)?, switch)
+        }
+        "reverse" => {
+            let switch = words.switch()?;
+            FilterCommand::Reverse(name(words)?, switch)
+        }
+        "load" => FilterCommand::Load(name(words)?),
+        "forget" => FilterCommand::Forget(name(words)?),
         other => return Err(CommandError::Unknown(format!("filter {other}"))),
     })
+}
+
+/// The name of a kept filter.
+fn name(words: &mut Words<'_>) -> Result<String, CommandError> {
+    kept_name(&words.rest("NAME")?).ok_or(CommandError::NoName(LONGEST_NAME))
+}
+
+/// The name of a kept filter as it is written: words with one blank between them; `None` where it is
+/// none, or too long, or would end a command in a link.
+pub fn kept_name(text: &str) -> Option<String> {
+    let name = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let fits = (1..=LONGEST_NAME).contains(&name.chars().count());
+    (fits && !name.contains(|c: char| c == ';' || c.is_control())).then_some(name)
 }
 
 fn place(words: &mut Words<'_>) -> Result<[f64; 4], CommandError> {

@@ -20,6 +20,8 @@ pub enum ImageCommand {
     Fit,
     /// What is shown.
     Show(Layer),
+    /// Which part of the light is shown.
+    Channel(Channel),
     /// How light becomes colour.
     Tone(ToneCurve),
     /// The exponent of [`ToneCurve::Gamma`].
@@ -46,6 +48,8 @@ pub enum Layer {
     Difference,
     /// The relative squared error of each pixel against the reference.
     Error,
+    /// How different it looks from the reference.
+    Flip,
     /// Mean acceptance probability of proposals made from here.
     Acceptance,
     /// Mean stay of a chain at a path that ends here.
@@ -60,11 +64,12 @@ pub enum Layer {
 
 impl Layer {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Image,
         Self::Reference,
         Self::Difference,
         Self::Error,
+        Self::Flip,
         Self::Acceptance,
         Self::Dwell,
         Self::Visits,
@@ -74,7 +79,7 @@ impl Layer {
 
     /// True where there is nothing to show without a reference.
     pub fn compares(self) -> bool {
-        matches!(self, Self::Reference | Self::Difference | Self::Error)
+        matches!(self, Self::Reference | Self::Difference | Self::Error | Self::Flip)
     }
 
     /// True for what the chains' diagnostics tell.
@@ -93,11 +98,45 @@ impl fmt::Display for Layer {
             Self::Reference => "reference",
             Self::Difference => "difference",
             Self::Error => "error",
+            Self::Flip => "flip",
             Self::Acceptance => "acceptance",
             Self::Dwell => "dwell",
             Self::Visits => "visits",
             Self::Spread => "spread",
             Self::Disagreement => "disagreement",
+        })
+    }
+}
+
+/// A part of the light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Channel {
+    /// All of it.
+    #[default]
+    Rgb,
+    /// Red alone, in grey.
+    Red,
+    /// Green alone, in grey.
+    Green,
+    /// Blue alone, in grey.
+    Blue,
+    /// Luminance, in grey.
+    Luminance,
+}
+
+impl Channel {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Rgb, Self::Red, Self::Green, Self::Blue, Self::Luminance];
+}
+
+impl fmt::Display for Channel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Rgb => "rgb",
+            Self::Red => "red",
+            Self::Green => "green",
+            Self::Blue => "blue",
+            Self::Luminance => "luminance",
         })
     }
 }
@@ -137,8 +176,9 @@ pub(super) const FORMS: &[Form] = &[
     ("image fit", "as large as its panel"),
     (
         "image show LAYER",
-        "image, reference, difference, error, acceptance, dwell, visits, spread, disagreement",
+        "image, reference, difference, error, flip, acceptance, dwell, visits, spread, disagreement",
     ),
+    ("image channel rgb|red|green|blue|luminance", "which part of the light is shown"),
     ("image tone srgb|gamma|false", "how light becomes colour"),
     ("image gamma X", "exponent of the tone `gamma` (0.5 to 4)"),
     ("image reference FILE.exr", "compare with an image"),
@@ -156,6 +196,7 @@ impl fmt::Display for ImageCommand {
             Self::Look([u, v]) => write!(f, "look {u} {v}"),
             Self::Fit => write!(f, "fit"),
             Self::Show(layer) => write!(f, "show {layer}"),
+            Self::Channel(channel) => write!(f, "channel {channel}"),
             Self::Tone(tone) => write!(f, "tone {tone}"),
             Self::Gamma(gamma) => write!(f, "gamma {gamma}"),
             Self::Reference(file) => write!(f, "reference {file}"),
@@ -176,6 +217,7 @@ pub(super) fn parse(words: &mut Words<'_>) -> Result<ImageCommand, CommandError>
         }
         "fit" => ImageCommand::Fit,
         "show" => ImageCommand::Show(words.choice("LAYER", &Layer::ALL)?),
+        "channel" => ImageCommand::Channel(words.choice("CHANNEL", &Channel::ALL)?),
         "tone" => ImageCommand::Tone(words.choice("TONE", &ToneCurve::ALL)?),
         "gamma" => ImageCommand::Gamma(words.number("X", 0.5..=4.0)?),
         "reference" => ImageCommand::Reference(words.rest("FILE")?),

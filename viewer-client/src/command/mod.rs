@@ -18,10 +18,10 @@ mod words;
 
 pub use camera::{CameraCommand, Place, Side};
 pub use cloud::{CloudCommand, ColorMode, ColorScale, Marks};
-pub use desk::DeskCommand;
-pub use filter::{FilterCommand, MOST_SELECTORS, Sphere, kind_name};
-pub use image::{ImageCommand, Layer, ToneCurve};
-pub use layout::{LayoutCommand, PanelName, ThemeName};
+pub use desk::{DeskCommand, Source};
+pub use filter::{FilterCommand, MOST_KEPT, MOST_SELECTORS, Sphere, kept_name, kind_name};
+pub use image::{Channel, ImageCommand, Layer, ToneCurve};
+pub use layout::{LayoutCommand, Move, PanelName, ThemeName, WindowSide};
 pub use path::{PathCommand, VertexStep};
 pub use play::PlayCommand;
 pub use scene::{ClipSide, SceneCommand, Shading};
@@ -124,7 +124,7 @@ impl FromStr for Command {
             "explorer" if words.peek() == Some("show") => {
                 Self::Scrub(steer::parse_show(&mut words)?)
             }
-            verb @ ("connect" | "share" | "screenshot") => {
+            verb @ ("connect" | "share" | "screenshot" | "copy") => {
                 Self::Desk(desk::parse(verb, &mut words)?)
             }
             group @ ("explorer" | "chains" | "lease") => {
@@ -158,14 +158,18 @@ mod tests {
         scene grid toggle\nscene clip -x\nscene cut 0.25\n\
         filter set film in rect(0.25, 0, 1, 0.5)\nfilter clear\nfilter enable off\nfilter invert toggle\n\
         filter add start 1 2.5 -3 0.25\nfilter move 1 0 0 1 2\nfilter choose 0\nfilter delete 2\n\
-        filter bare\n\
+        filter bare\nfilter keep my caustics\nfilter use on my caustics\nfilter reverse toggle my caustics\n\
+        filter load my caustics\nfilter forget my caustics\n\
         image exposure -1.5\nimage auto\nimage zoom 2\nimage look 0.25 0.75\nimage fit\n\
-        image show difference\nimage tone gamma\nimage gamma 1.8\nimage reference a b.exr\n\
+        image show difference\nimage channel luminance\nimage tone gamma\nimage gamma 1.8\nimage reference a b.exr\n\
         image forget\nimage save out.png\nimage tev 127.0.0.1:14158\n\
-        panel statistics off\ntheme light\nhelp toggle\nkeys classic\nseen on\npalette on\nhint off\nscale 125\n\
-        path pick 0.1 -0.2 0.01\npath stay 2\npath none\npath vertex 3\nplay toggle\nplay rate 0.5\nplay to 7\n\
+        panel statistics off\nfold image on\narrange filter before image\nwidth left 300\nusual\n\
+        mouse blender\ntheme light\nhelp toggle\nkeys classic\nseen on\npalette on\nhint off\nscale 125\n\
+        path pick 0.1 -0.2 0.01\npath stay 2\n\
+        path show 3.0.1024 1 7 32 0.5 0.25 0.75 1.5 1 0.5 0 1 2.5 -3 0 32767 0 0 1 4 4 5 6 0 -32768 6 0 0 4294967295\n\
+        path none\npath vertex 3\nplay toggle\nplay rate 0.5\nplay to 7\n\
         play by -2\nplay accepted\n\
-        connect 127.0.0.1:50061\nshare\nscreenshot a b.png\n\
+        connect 127.0.0.1:50061\nshare\nscreenshot a b.png\ncopy statistics\n\
         explorer seed 3.0.1024\nexplorer play 2.5\nexplorer pause\nexplorer step 10\n\
         explorer skip accepted\nexplorer allow 0,2,5\nexplorer fan 2 100\nexplorer show live\n\
         chains pause\nchains resume\nchains weight 1 0.25\nchains precision 0.001\n\

@@ -46,6 +46,12 @@ pub enum CommandError {
         /// What would do.
         choices: String,
     },
+    /// A name that is none.
+    #[error("NAME must have 1 to {0} letters, without `;`")]
+    NoName(usize),
+    /// Numbers that are no path.
+    #[error("this is no path as a link to a view writes it")]
+    NoPath,
     /// A filter that cannot be read.
     #[error("the filter cannot be read: {0}")]
     BadFilter(String),

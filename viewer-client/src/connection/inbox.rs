@@ -5,6 +5,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 use common::{
     FilmTile, FilterReply, FocusPath, FocusStep, Gap, Notice, PathBatch, Statistics, Welcome,
@@ -63,6 +64,8 @@ pub struct Delivery {
     pub notices: VecDeque<Notice>,
     /// The answer to the newest filter.
     pub filter: Option<FilterReply>,
+    /// How long the daemon took to answer a question last, way and back.
+    pub latency: Option<Duration>,
 }
 
 impl Delivery {
@@ -78,6 +81,7 @@ impl Delivery {
             && self.explorer_film.is_empty()
             && self.notices.is_empty()
             && self.filter.is_none()
+            && self.latency.is_none()
     }
 
     fn push(&mut self, event: TracerEvent) {
@@ -201,6 +205,11 @@ impl Inbox {
     /// Puts in a scene.
     pub fn push_scene(&self, scene: ReceivedScene) {
         self.edit(|held| held.scene = Some(scene));
+    }
+
+    /// Puts in how long the daemon took to answer.
+    pub fn push_latency(&self, latency: Duration) {
+        self.edit(|held| held.latency = Some(latency));
     }
 
     /// Puts in how the connection is.

@@ -17,18 +17,21 @@ pub use session::{Greeting, SceneFetcher, Session, SessionError, own_name};
 use std::fmt;
 use std::sync::Arc;
 use std::thread::JoinHandle;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use common::{Appearance, Order, Role};
 use proto::{NumberedOrder, ReceivedScene, TracerEvent, ViewerEvent, WantedFilter};
 use tokio::sync::{Notify, mpsc};
 use tokio::task::JoinSet;
+use tokio::time::MissedTickBehavior;
 use tokio_util::sync::CancellationToken;
 
 use crate::status::LinkState;
 
 /// Messages to the daemon that may wait for the connection's thread.
 const OUTBOX: usize = 64;
+/// The daemon is asked this often how long it takes to answer.
+const QUESTION: Duration = Duration::from_secs(2);
 
 /// Called whenever something new lies in the inbox.
 pub type Waker = Box<dyn Fn() + Send + Sync>;
@@ -190,6 +193,9 @@ impl Keeper {
     async fn listen(&mut self, mut session: Session, failures: &mut u32) -> Option<SessionError> {
         let shutdown = self.shutdown.clone();
         let mut fetching: JoinSet<Result<Option<ReceivedScene>, SessionError>> = JoinSet::new();
+        let mut asking: JoinSet<Result<Duration, SessionError>> = JoinSet::new();
+        let mut question = tokio::time::interval(QUESTION);
+        question.set_missed_tick_behavior(MissedTickBehavior::Delay);
         loop {
             tokio::select! {
                 () = shutdown.cancelled() => {
@@ -201,6 +207,21 @@ impl Keeper {
                     Ok(Err(error)) => return Some(error),
                     Err(error) => tracing::error!("fetching the scene failed: {error}"),
                 },
+                // A daemon that does not answer is asked nothing more; that it is silent is seen
+                // elsewhere.
+                _ = question.tick(), if asking.is_empty() && !self.held_hash.is_empty() => {
+                    let question = session.scene_fetcher().fetch(self.held_hash.clone());
+                    asking.spawn(async move {
+                        let begun = Instant::now();
+                        question.await.map(|_| begun.elapsed())
+                    });
+                }
+                Some(answered) = asking.join_next() => {
+                    if let Ok(Ok(latency)) = answered {
+                        self.inbox.push_latency(latency);
+                        (self.waker)();
+                    }
+                }
                 Some(event) = self.orders.recv() => {
                     self.remember(&event);
                     if !session.say(event) {

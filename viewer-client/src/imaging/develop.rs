@@ -1,9 +1,11 @@
 //! From numbers to the colours on screen.
 
+use std::borrow::Cow;
+
 use common::{Diagnostics, Rgb};
 
-use super::Reference;
-use crate::command::{Layer, ToneCurve};
+use super::{FlipMap, Reference};
+use crate::command::{Channel, Layer, ToneCurve};
 use crate::film::{Film, encode_srgb};
 use crate::format;
 use crate::settings::ImageSettings;
@@ -58,6 +60,8 @@ pub struct Sources<'a> {
     pub film: &'a Film,
     /// What it is compared with.
     pub reference: Option<&'a Reference>,
+    /// How different it looks from that.
+    pub flip: Option<&'a FlipMap>,
     /// What the chains tell of parts of the film.
     pub diagnostics: Option<&'a Diagnostics>,
 }
@@ -103,11 +107,11 @@ pub fn ramp_color(ramp: Ramp, place: f32) -> [u8; 3] {
 pub fn develop(sources: Sources<'_>, look: &ImageSettings) -> Option<Vec<u8>> {
     let film = sources.film;
     match look.layer {
-        Layer::Image => Some(tone(film.rgb(), look)),
+        Layer::Image => Some(tone(&channel(film.rgb(), look.channel), look)),
         Layer::Reference => {
             let reference = sources.reference.filter(|r| r.fits(film))?;
             let rgb: Vec<f32> = reference.pixels.iter().flat_map(|p| p.to_f32()).collect();
-            Some(tone(&rgb, look))
+            Some(tone(&channel(&rgb, look.channel), look))
         }
         Layer::Difference => {
             let reference = sources.reference.filter(|r| r.fits(film))?;
@@ -122,6 +126,11 @@ pub fn develop(sources: Sources<'_>, look: &ImageSettings) -> Option<Vec<u8>> {
             let errors = sources.reference.filter(|r| r.fits(film))?.errors(film);
             let color = |e: f64| ramp_color(Ramp::Sequential, logarithmic(e as f32, ERRORS));
             Some(errors.into_iter().flat_map(color).collect())
+        }
+        Layer::Flip => {
+            let [width, height] = film.size();
+            let map = sources.flip.filter(|map| map.errors.len() == width * height)?;
+            Some(map.errors.iter().flat_map(|&e| ramp_color(Ramp::Sequential, e)).collect())
         }
         Layer::Acceptance | Layer::Dwell | Layer::Visits | Layer::Spread | Layer::Disagreement => {
             Some(map(film.size(), sources.diagnostics?, look.layer))
@@ -147,7 +156,7 @@ pub fn map_values(diagnostics: &Diagnostics, layer: Layer) -> &[f32] {
         Layer::Visits => &diagnostics.maps.visits,
         Layer::Spread => &diagnostics.maps.spread,
         Layer::Disagreement => &diagnostics.maps.r_hat,
-        Layer::Image | Layer::Reference | Layer::Difference | Layer::Error => &[],
+        Layer::Image | Layer::Reference | Layer::Difference | Layer::Error | Layer::Flip => &[],
     }
 }
 
@@ -190,6 +199,11 @@ pub fn legend(look: &ImageSettings) -> Option<Legend> {
             ramp: Ramp::Sequential,
             ticks: decades(ERRORS),
         }),
+        Layer::Flip => Some(Legend {
+            title: "FLIP: the difference that a person sees".to_owned(),
+            ramp: Ramp::Sequential,
+            ticks: ["0", "0.25", "0.5", "0.75", "1"].map(str::to_owned).into(),
+        }),
         map => {
             let (title, ticks) = map_legend(map);
             let title = format!("{title}; grey where chains came too seldom");
@@ -223,6 +237,18 @@ fn decades([low, high]: [f32; 2]) -> Vec<String> {
 /// Where a value lies between two others on a logarithmic scale; zero is where the lower one is.
 fn logarithmic(value: f32, [low, high]: [f32; 2]) -> f32 {
     if value == 0.0 { 0.0 } else { (value / low).ln() / (high / low).ln() }
+}
+
+/// All of the light, or one part of it as grey.
+fn channel(rgb: &[f32], channel: Channel) -> Cow<'_, [f32]> {
+    let of: fn(&[f32; 3]) -> f32 = match channel {
+        Channel::Rgb => return Cow::Borrowed(rgb),
+        Channel::Red => |[r, _, _]| *r,
+        Channel::Green => |[_, g, _]| *g,
+        Channel::Blue => |[_, _, b]| *b,
+        Channel::Luminance => |rgb| Rgb::from(*rgb).luminance() as f32,
+    };
+    rgb.as_chunks::<3>().0.iter().flat_map(|pixel| [of(pixel); 3]).collect()
 }
 
 fn tone(rgb: &[f32], look: &ImageSettings) -> Vec<u8> {
@@ -266,7 +292,8 @@ mod tests {
             height: 2,
             pixels: vec![Rgb::grey(grey); 4],
         });
-        let sources = Sources { film, reference: reference.as_ref(), diagnostics: None };
+        let sources =
+            Sources { film, reference: reference.as_ref(), flip: None, diagnostics: None };
         develop(sources, look).map(|bytes| [bytes[0], bytes[1], bytes[2]])
     }
 
@@ -277,6 +304,22 @@ mod tests {
         assert_eq!(first(&film(0.25), None, &ImageSettings::default()), Some([137; 3]), "as is");
         let look = ImageSettings { tone: ToneCurve::Gamma, gamma: 2.0, ..look };
         assert_eq!(first(&film(0.0625), None, &look), Some([127; 3]), "the root of a quarter");
+    }
+
+    #[test]
+    fn channels_are_shown_alone() {
+        let mut film = Film::default();
+        let rgb = vec![1.0, 0.25, 0.0];
+        let tile = FilmTile { sequence: 1, width: 1, height: 1, first_row: 0, steps: 1, rgb };
+        assert!(film.accept(&tile), "a whole image");
+        let of =
+            |channel| first(&film, None, &ImageSettings { channel, ..ImageSettings::default() });
+        assert_eq!(of(Channel::Rgb), Some([255, 137, 0]), "all of it");
+        assert_eq!(of(Channel::Red), Some([255; 3]), "red");
+        assert_eq!(of(Channel::Green), Some([137; 3]), "green");
+        assert_eq!(of(Channel::Blue), Some([0; 3]), "blue");
+        let grey = Rgb::from([1.0, 0.25, 0.0]).luminance() as f32;
+        assert_eq!(of(Channel::Luminance), Some([encode_srgb(grey); 3]), "luminance");
     }
 
     #[test]
@@ -316,7 +359,8 @@ mod tests {
         let film = film(0.5);
         let of = |layer| {
             let look = ImageSettings { layer, ..ImageSettings::default() };
-            let sources = Sources { film: &film, reference: None, diagnostics: Some(&diagnostics) };
+            let diagnostics = Some(&diagnostics);
+            let sources = Sources { film: &film, reference: None, flip: None, diagnostics };
             develop(sources, &look).expect("there are maps")
         };
         let colors = [SEQUENTIAL[8], SEQUENTIAL[0], UNKNOWN, SEQUENTIAL[4]].concat();
@@ -325,7 +369,7 @@ mod tests {
         assert_eq!(of(Layer::Disagreement), colors, "from agreement to twice the spread");
         assert_eq!(of(Layer::Dwell), UNKNOWN.repeat(4), "a map that is missing");
         let look = ImageSettings { layer: Layer::Visits, ..ImageSettings::default() };
-        let sources = Sources { film: &film, reference: None, diagnostics: None };
+        let sources = Sources { film: &film, reference: None, flip: None, diagnostics: None };
         assert_eq!(develop(sources, &look), None, "no diagnostics, nothing to show");
     }
 

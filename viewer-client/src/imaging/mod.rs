@@ -4,9 +4,11 @@
 mod compare;
 mod develop;
 mod exchange;
+mod flip;
 mod tev;
 
 pub use compare::{Comparison, Reference};
 pub use develop::{BAND, Legend, Ramp, Sources, develop, legend, map_values, ramp_color};
 pub use exchange::{ExchangeError, read_exr, save};
+pub use flip::FlipMap;
 pub use tev::{TEV_ADDRESS, send_to_tev};

@@ -97,6 +97,53 @@ impl fmt::Display for KeyPreset {
     }
 }
 
+/// What dragging with the mouse does to the camera.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MousePreset {
+    /// As in Rerun: left turns, right shifts.
+    #[default]
+    Rerun,
+    /// As in Blender: the middle button turns, with Shift it shifts, with Ctrl it comes closer.
+    Blender,
+    /// As in Maya: all with Alt, left turns, middle shifts, right comes closer.
+    Maya,
+}
+
+impl MousePreset {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Rerun, Self::Blender, Self::Maya];
+
+    /// What dragging does, for the help sheet.
+    pub fn drags(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Self::Rerun => &[
+                ("Left, middle drag", "turn round the pivot; look about while flying"),
+                ("Right, Shift+drag", "shift the view"),
+            ],
+            Self::Blender => &[
+                ("Middle drag", "turn round the pivot; look about while flying"),
+                ("Shift+middle drag", "shift the view"),
+                ("Ctrl+middle drag", "come closer"),
+            ],
+            Self::Maya => &[
+                ("Alt+left drag", "turn round the pivot; look about while flying"),
+                ("Alt+middle drag", "shift the view"),
+                ("Alt+right drag", "come closer"),
+            ],
+        }
+    }
+}
+
+impl fmt::Display for MousePreset {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Rerun => "rerun",
+            Self::Blender => "blender",
+            Self::Maya => "maya",
+        })
+    }
+}
+
 /// The bindings of a preset, in the order of the help sheet.
 pub fn bindings(preset: KeyPreset) -> Vec<&'static Binding> {
     if preset == KeyPreset::Today {
@@ -116,8 +163,6 @@ const MOUSE: &[(&str, &str)] = &[
     ("Click", "select a path; again, the next one there"),
     ("F2 F3 F4 F5", "a sphere under the cursor: paths that start, end, pass any, pass all"),
     ("Delete", "remove the chosen sphere"),
-    ("Left, middle drag", "turn round the pivot; look about while flying"),
-    ("Right, Shift+drag", "shift the view"),
     ("Wheel", "come closer to the point under the cursor"),
     ("W A S D, Q E", "while flying: move, down and up; Shift is faster"),
 ];

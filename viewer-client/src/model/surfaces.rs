@@ -64,7 +64,7 @@ mod tests {
                 material("lambert", Rgb::new(1.0, 0.25, 0.0), Rgb::BLACK),
                 material("lambert", Rgb::BLACK, Rgb::new(8.0, 2.0, 0.0)),
             ],
-            camera: None,
+            ..SceneMesh::default()
         };
         let corners = corners(&mesh);
         assert_eq!(corners.len(), 6, "the triangle with a bad index is left out");

@@ -39,7 +39,7 @@ impl ConnectMenu {
         ui.separator();
         let link = ui
             .button("Copy link to this view")
-            .on_hover_text("Restores camera, filter and colours: viewer-client LINK");
+            .on_hover_text("Restores camera, filter, selection and colours: viewer-client LINK");
         if link.clicked() {
             commands.push(Command::Desk(DeskCommand::Share));
             ui.close();

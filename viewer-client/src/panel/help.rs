@@ -3,8 +3,10 @@
 use egui::{Align, Button, Frame, Grid, Id, Label, Layout, Modal, RichText, Ui};
 
 use super::Panel;
+use super::widgets::capitalised;
 use crate::command::{Command, LayoutCommand, Switch};
-use crate::keys::{Group, KeyPreset, bindings, key_name};
+use crate::keys::{Group, KeyPreset, MousePreset, bindings, key_name};
+use crate::settings::Layout as Settled;
 use crate::theme;
 use crate::world::World;
 
@@ -23,7 +25,7 @@ impl Panel for Help {
         let frame = Frame::popup(ui.style()).inner_margin(20);
         let modal = Modal::new(Id::unique("help"))
             .frame(frame)
-            .show(ui.ctx(), |ui| sheet(ui, world.settings.layout.keys, commands));
+            .show(ui.ctx(), |ui| sheet(ui, &world.settings.layout, commands));
         if modal.should_close() || modal.inner {
             commands.push(Command::Layout(LayoutCommand::Help(Switch::Off)));
         }
@@ -31,14 +33,20 @@ impl Panel for Help {
 }
 
 /// The sheet; true when its button was clicked.
-fn sheet(ui: &mut Ui, preset: KeyPreset, commands: &mut Vec<Command>) -> bool {
+fn sheet(ui: &mut Ui, layout: &Settled, commands: &mut Vec<Command>) -> bool {
+    let preset = layout.keys;
     let width = (ui.ctx().content_rect().width() - 60.0).min(WIDTH);
     ui.set_width(width);
     ui.label(RichText::new("Keys and mouse").heading().strong());
     ui.add_space(8.0);
     ui.columns(3, |columns| {
         if let [left, middle, right] = columns {
-            let mouse = preset.mouse().iter().map(|(key, help)| ((*key).to_owned(), *help));
+            let drags = match preset {
+                KeyPreset::Today => layout.mouse.drags(),
+                KeyPreset::Classic => &[],
+            };
+            let mouse = preset.mouse().iter().chain(drags);
+            let mouse = mouse.map(|(key, help)| ((*key).to_owned(), *help));
             section(left, "Mouse", mouse);
             section(left, Group::Camera.title(), keys(preset, Group::Camera));
             section(middle, Group::Paths.title(), keys(preset, Group::Paths));
@@ -61,11 +69,29 @@ fn sheet(ui: &mut Ui, preset: KeyPreset, commands: &mut Vec<Command>) -> bool {
                     commands.push(Command::Layout(LayoutCommand::Keys(other)));
                 }
             }
+            if preset == KeyPreset::Today {
+                ui.separator();
+                mice(ui, layout.mouse, commands);
+            }
             close
         })
         .inner
     })
     .inner
+}
+
+/// What dragging with the mouse does, from the right to the left.
+fn mice(ui: &mut Ui, chosen: MousePreset, commands: &mut Vec<Command>) {
+    for preset in MousePreset::ALL.into_iter().rev() {
+        let name = capitalised(&preset.to_string());
+        let first = preset.drags().first().map_or("", |(drag, _)| drag);
+        let tip = format!("Drag as in {name}: {first} turns");
+        let button = Button::selectable(preset == chosen, name);
+        if ui.add(button).on_hover_text(tip).clicked() {
+            commands.push(Command::Layout(LayoutCommand::Mouse(preset)));
+        }
+    }
+    ui.label(RichText::new("Mouse as in").weak());
 }
 
 fn keys(preset: KeyPreset, group: Group) -> Vec<(String, &'static str)> {

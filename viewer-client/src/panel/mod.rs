@@ -3,12 +3,14 @@
 //! To add a panel: its file, and its line in [`all`]; a name in
 //! [`PanelName`] where the user may close it.
 
+mod builder;
 mod cloud;
-mod conditions;
 mod connect;
+mod copied;
 mod diagnostics;
 mod explorer;
 mod filter;
+mod heading;
 mod help;
 mod hint;
 mod image;
@@ -18,6 +20,7 @@ mod palette;
 mod path;
 mod playback;
 mod scene;
+mod sheets;
 mod statistics;
 mod status;
 #[cfg(test)]
@@ -27,11 +30,14 @@ mod widgets;
 
 use std::fmt::Debug;
 
-use egui::{Frame, Margin, ScrollArea, Ui};
+use egui::text_selection::LabelSelectionState;
+use egui::{Event, Frame, Id, Margin, Response, ScrollArea, Sense, Ui};
 
+pub use copied::text as text_of;
 pub use notice::NOTICE_TIME;
 
-use crate::command::{Command, PanelName};
+use crate::command::{Command, DeskCommand, LayoutCommand, Move, PanelName, Source, WindowSide};
+use crate::settings::WIDTHS;
 use crate::world::World;
 
 /// A part of the window.
@@ -47,30 +53,31 @@ pub enum Slot {
     Top,
     /// A bar along the lower edge.
     Bottom,
-    /// One of the sections on the left, which the user may close.
-    Left(PanelName),
-    /// One of the sections on the right, which the user may close.
-    Right(PanelName),
+    /// One of the sections at the sides, which the user may close, fold and put elsewhere.
+    Section(PanelName),
     /// What is left of the window.
     Centre,
     /// On top of everything.
     Overlay,
 }
 
+/// A panel and where it lies.
+pub type Placed = (Slot, Box<dyn Panel>);
+
 /// Every panel, in the order in which they are laid out.
-pub fn all() -> Vec<(Slot, Box<dyn Panel>)> {
+pub fn all() -> Vec<Placed> {
     vec![
         (Slot::Top, Box::new(menu::Menu::default())),
         (Slot::Bottom, Box::new(status::StatusBar)),
-        (Slot::Left(PanelName::Cloud), Box::new(cloud::Cloud)),
-        (Slot::Left(PanelName::Filter), Box::new(filter::FilterPanel::default())),
-        (Slot::Left(PanelName::Scene), Box::new(scene::Scene)),
-        (Slot::Right(PanelName::Image), Box::new(image::ImagePanel::default())),
-        (Slot::Right(PanelName::Path), Box::new(path::PathPanel)),
-        (Slot::Right(PanelName::Explorer), Box::new(explorer::ExplorerPanel::default())),
-        (Slot::Right(PanelName::Playback), Box::new(playback::PlaybackPanel)),
-        (Slot::Right(PanelName::Statistics), Box::new(statistics::StatisticsPanel)),
-        (Slot::Right(PanelName::Diagnostics), Box::new(diagnostics::DiagnosticsPanel)),
+        (Slot::Section(PanelName::Cloud), Box::new(cloud::Cloud)),
+        (Slot::Section(PanelName::Filter), Box::new(filter::FilterPanel::default())),
+        (Slot::Section(PanelName::Scene), Box::new(scene::Scene)),
+        (Slot::Section(PanelName::Image), Box::new(image::ImagePanel::default())),
+        (Slot::Section(PanelName::Path), Box::new(path::PathPanel)),
+        (Slot::Section(PanelName::Explorer), Box::new(explorer::ExplorerPanel::default())),
+        (Slot::Section(PanelName::Playback), Box::new(playback::PlaybackPanel)),
+        (Slot::Section(PanelName::Statistics), Box::new(statistics::StatisticsPanel)),
+        (Slot::Section(PanelName::Diagnostics), Box::new(diagnostics::DiagnosticsPanel)),
         (Slot::Centre, Box::new(viewport::Viewport)),
         (Slot::Overlay, Box::new(hint::Hint)),
         (Slot::Overlay, Box::new(notice::NoticePanel)),
@@ -79,18 +86,8 @@ pub fn all() -> Vec<(Slot, Box<dyn Panel>)> {
     ]
 }
 
-/// Width of the left side in points.
-const LEFT_WIDTH: f32 = 244.0;
-/// Width of the right side in points.
-const RIGHT_WIDTH: f32 = 352.0;
-
 /// Lays out all panels.
-pub fn show(
-    panels: &mut [(Slot, Box<dyn Panel>)],
-    ui: &mut Ui,
-    world: &World<'_>,
-    commands: &mut Vec<Command>,
-) {
+pub fn show(panels: &mut [Placed], ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     let bar = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(12, 5));
     let side = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(12, 8));
     for (slot, panel) in panels.iter_mut() {
@@ -103,27 +100,11 @@ pub fn show(
                     .frame(bar)
                     .show(ui, |ui| panel.ui(ui, world, commands));
             }
-            Slot::Left(_) | Slot::Right(_) | Slot::Centre | Slot::Overlay => {}
+            Slot::Section(_) | Slot::Centre | Slot::Overlay => {}
         }
     }
-    let open = |slot: Slot| match slot {
-        Slot::Left(name) | Slot::Right(name) => {
-            world.settings.layout.is_open(name) && world.has_use_for(name)
-        }
-        _ => false,
-    };
-    let is_left = |slot: Slot| matches!(slot, Slot::Left(_)) && open(slot);
-    let is_right = |slot: Slot| matches!(slot, Slot::Right(_)) && open(slot);
-    if panels.iter().any(|(slot, _)| is_left(*slot)) {
-        let left = egui::Panel::left("left").frame(side).default_size(LEFT_WIDTH);
-        left.size_range(200.0..=420.0)
-            .show(ui, |ui| sections(ui, panels, is_left, world, commands));
-    }
-    if panels.iter().any(|(slot, _)| is_right(*slot)) {
-        let right = egui::Panel::right("right").frame(side).default_size(RIGHT_WIDTH);
-        right
-            .size_range(300.0..=640.0)
-            .show(ui, |ui| sections(ui, panels, is_right, world, commands));
+    for window_side in WindowSide::ALL {
+        one_side(ui, (panels, side), window_side, world, commands);
     }
     for (slot, panel) in panels.iter_mut() {
         match slot {
@@ -131,26 +112,89 @@ pub fn show(
                 egui::CentralPanel::no_frame().show(ui, |ui| panel.ui(ui, world, commands));
             }
             Slot::Overlay => panel.ui(ui, world, commands),
-            Slot::Top | Slot::Bottom | Slot::Left(_) | Slot::Right(_) => {}
+            Slot::Top | Slot::Bottom | Slot::Section(_) => {}
         }
+    }
+}
+
+/// One side of the window, where it has anything to show. Its width is the user's.
+fn one_side(
+    ui: &mut Ui,
+    (panels, frame): (&mut [Placed], Frame),
+    side: WindowSide,
+    world: &World<'_>,
+    commands: &mut Vec<Command>,
+) {
+    let layout = &world.settings.layout;
+    let is_shown = |name: &PanelName| layout.is_open(*name) && world.has_use_for(*name);
+    let names: Vec<PanelName> = layout.side(side).filter(is_shown).collect();
+    if names.is_empty() {
+        return;
+    }
+    let width = layout.width(side);
+    // The name tells the width, or a side would stay as wide as it first was.
+    let id = Id::unique((side as usize, width));
+    let panel = match side {
+        WindowSide::Left => egui::Panel::left(id),
+        WindowSide::Right => egui::Panel::right(id),
+    };
+    // The view keeps a third of a small window.
+    let most = (0.45 * ui.ctx().content_rect().width()).max(f32::from(*WIDTHS.start()));
+    let range = f32::from(*WIDTHS.start())..=most.min(f32::from(*WIDTHS.end()));
+    let panel = panel.frame(frame).default_size(f32::from(width)).size_range(range);
+    let shown = panel.show(ui, |ui| sections(ui, (panels, &names), side, world, commands));
+    let now = shown.response.rect.width().round();
+    let let_go = ui.input(|input| input.pointer.any_released());
+    if let_go && (now - f32::from(width)).abs() >= 2.0 && f32::from(width) <= most {
+        let points = (now as u16).clamp(*WIDTHS.start(), *WIDTHS.end());
+        commands.push(Command::Layout(LayoutCommand::Width(side, points)));
     }
 }
 
 /// The sections of one side, each under its heading.
 fn sections(
     ui: &mut Ui,
-    panels: &mut [(Slot, Box<dyn Panel>)],
-    wanted: impl Fn(Slot) -> bool,
+    (panels, names): (&mut [Placed], &[PanelName]),
+    side: WindowSide,
     world: &World<'_>,
     commands: &mut Vec<Command>,
 ) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        for (slot, panel) in panels.iter_mut().filter(|(slot, _)| wanted(*slot)) {
-            if let Slot::Left(name) | Slot::Right(name) = slot {
-                widgets::heading(ui, *name, commands);
-                ui.push_id(*name as usize, |ui| panel.ui(ui, world, commands));
-                ui.add_space(14.0);
-            }
+        for &name in names {
+            let found = panels.iter_mut().find(|(slot, _)| *slot == Slot::Section(name));
+            let Some((_, panel)) = found else { continue };
+            let shown = ui.scope(|ui| {
+                heading::show(ui, name, world, commands);
+                if !world.settings.layout.is_folded(name) {
+                    ui.push_id(name as usize, |ui| panel.ui(ui, world, commands));
+                    ui.add_space(14.0);
+                }
+            });
+            heading::receive(ui, &shown.response, name, commands);
+            copy_by_key(ui, &shown.response, name, commands);
+        }
+        let rest = ui.available_size_before_wrap().max(egui::vec2(1.0, 24.0));
+        let (_, rest) = ui.allocate_exact_size(rest, Sense::hover());
+        if let Some(dragged) = rest.dnd_release_payload::<PanelName>() {
+            let place = match side {
+                WindowSide::Left => Move::Left,
+                WindowSide::Right => Move::Right,
+            };
+            commands.push(Command::Layout(LayoutCommand::Arrange(*dragged, place)));
         }
     });
+}
+
+/// Ctrl+C over a section copies what it says, unless a text is selected or written.
+fn copy_by_key(ui: &Ui, response: &Response, name: PanelName, commands: &mut Vec<Command>) {
+    let ctx = ui.ctx();
+    let is_copy = |event: &Event| matches!(event, Event::Copy);
+    if !response.contains_pointer() || !ui.input(|input| input.events.iter().any(is_copy)) {
+        return;
+    }
+    let selects = ctx.plugin::<LabelSelectionState>().lock().has_selection();
+    if !selects && !ctx.egui_wants_keyboard_input() {
+        ui.input_mut(|input| input.events.retain(|event| !is_copy(event)));
+        commands.push(Command::Desk(DeskCommand::Copy(Source::Panel(name))));
+    }
 }

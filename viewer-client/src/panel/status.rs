@@ -1,10 +1,10 @@
 //! The bar at the foot: connection, rates, losses, memory.
 
-use egui::{Align, Label, Layout, RichText, Ui};
+use egui::{Align, Label, Layout, RichText, Sense, Ui};
 
 use super::Panel;
 use super::widgets::dot;
-use crate::command::{Command, LayoutCommand, Switch};
+use crate::command::{Command, DeskCommand, LayoutCommand, Source, Switch};
 use crate::format;
 use crate::status::{LinkState, Status};
 use crate::theme;
@@ -16,8 +16,11 @@ pub(super) struct StatusBar;
 
 impl Panel for StatusBar {
     fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
-        ui.horizontal(|ui| {
+        let bar = ui.horizontal(|ui| {
             connection(ui, world, commands);
+            if world.status.is_connected() && world.playback.is_none() {
+                session(ui, world);
+            }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let keys =
                     ui.button("F1  Keys").on_hover_text("Every key and mouse button (F1, ?)");
@@ -26,6 +29,12 @@ impl Panel for StatusBar {
                 }
                 figures(ui, world);
             });
+        });
+        bar.response.interact(Sense::click()).context_menu(|ui| {
+            if ui.button("Copy as text").clicked() {
+                commands.push(Command::Desk(DeskCommand::Copy(Source::Status)));
+                ui.close();
+            }
         });
     }
 }
@@ -62,6 +71,35 @@ fn connection(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     }
 }
 
+/// What the chains are at, and who steers them.
+fn session(ui: &mut Ui, world: &World<'_>) {
+    let steering = &world.status.steering;
+    let dark = ui.visuals().dark_mode;
+    if let Some(chains) = &steering.chains {
+        ui.add_space(6.0);
+        let (text, color) = if chains.running {
+            ("Chains run", ui.visuals().weak_text_color())
+        } else {
+            ("Chains paused", theme::busy(dark))
+        };
+        let tip = format!("Epoch {}, run {}. {}", chains.epoch, chains.seed, chains.change);
+        ui.add(Label::new(RichText::new(text).color(color)).selectable(false)).on_hover_text(tip);
+    }
+    let driver = steering.presence.driver();
+    let own = world.status.welcome.as_ref().map(|welcome| welcome.session);
+    let (text, tip) = match driver {
+        Some(driver) if Some(driver.author.session) == own => {
+            ("You drive".to_owned(), "You may pause and steer; others watch")
+        }
+        Some(driver) => {
+            (format!("{} drives", driver.author.name), "Ask to drive in the Explorer panel")
+        }
+        None => ("Nobody drives".to_owned(), "Ask to drive in the Explorer panel"),
+    };
+    ui.add_space(6.0);
+    ui.add(Label::new(RichText::new(text).weak()).selectable(false)).on_hover_text(tip);
+}
+
 /// Where the daemon is, in words.
 fn place(status: &Status) -> String {
     if status.embedded { "the built-in daemon".to_owned() } else { status.address.clone() }
@@ -88,6 +126,11 @@ fn figures(ui: &mut Ui, world: &World<'_>) {
     figure(ui, "paths/s", &paths, &format!("Paths received a second, {bytes}/s"));
     let current = statistics.filter(|_| world.status.is_connected());
     let mutations = current.map_or(0.0, |s| s.mutations_per_second);
+    if let Some(latency) = world.status.latency.filter(|_| world.status.is_connected()) {
+        let milliseconds = 1e3 * latency.as_secs_f32();
+        let value = format::value(milliseconds);
+        figure(ui, "ms", &value, "Latency: how long the daemon took to answer, way and back");
+    }
     figure(ui, "mutations/s", &format::count(mutations), "Steps of all chains a second");
 }
 

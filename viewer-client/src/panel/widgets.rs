@@ -8,30 +8,11 @@ use egui::{
     pos2, vec2,
 };
 
-use crate::command::{Command, LayoutCommand, PanelName, Switch};
+use crate::command::Switch;
 use crate::theme;
 
 /// Width of the labels of a form in points.
 const LABEL_WIDTH: f32 = 74.0;
-
-/// The heading of a section, with a button that closes it.
-pub(super) fn heading(ui: &mut Ui, name: PanelName, commands: &mut Vec<Command>) {
-    ui.horizontal(|ui| {
-        ui.label(RichText::new(name.title()).strong().size(14.0));
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let close = ui
-                .add(egui::Button::new(RichText::new("×").weak().size(15.0)).frame(false))
-                .on_hover_text(format!("Close; the View menu opens {} again", name.title()));
-            if close.clicked() {
-                let command = LayoutCommand::Panel(name, Switch::Off);
-                commands.push(Command::Layout(command));
-            }
-        });
-    });
-    let line = ui.visuals().widgets.noninteractive.bg_stroke;
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 5.0), Sense::hover());
-    ui.painter().hline(rect.x_range(), rect.top(), line);
-}
 
 /// A label and what belongs to it, in one line.
 pub(super) fn row<R>(ui: &mut Ui, label: &str, tip: &str, add: impl FnOnce(&mut Ui) -> R) -> R {

@@ -194,3 +194,66 @@ fn the_claimed_error_is_the_real_one() {
     // Steps taken as independent would claim (p q / n) = 7.8e-4, a third of what is found.
     assert!(variance > 1.5 * 0.25 / 320.0, "the test tells the two apart: {variance}");
 }
+
+/// What the tally tells of paths of which none matches `text`.
+fn nearest(text: &str, letters: &[&str]) -> Option<NearestMiss> {
+    let filter = compiled(text);
+    let mut tally = FilterTally::new(1, &filter);
+    for (step, letters) in (0..).zip(letters) {
+        let header = PathHeader { id: PathId { step, ..header().id }, ..header() };
+        let path = path(letters);
+        let conditions = filter.conditions(&header, &path);
+        let wanted = filter.wants(conditions);
+        tally.count(&header, conditions, wanted);
+        if !wanted {
+            tally.count_miss(&filter, &header, &path, conditions);
+        }
+    }
+    tally.counts().nearest
+}
+
+#[test]
+fn the_nearest_miss_is_named_with_what_it_lacks() {
+    let of = |text: &str, letters: &[&str]| {
+        let miss = nearest(text, letters).expect("nothing matches");
+        let failed: Vec<_> = miss.failed.iter().map(|f| (f.condition, f.by)).collect();
+        (miss.path.step, miss.asked, failed)
+    };
+    // Vertices lie at x = 0, 1, 2, ...
+    let (step, asked, failed) =
+        of("any in sphere(9, 0, 0, 0.5) and edges >= 2 and chain == 3", &["LDE", "LDDDE", "LDDE"]);
+    assert_eq!((step, asked), (1, 3), "the longest comes nearest to x = 9");
+    assert_eq!(failed, [(0, Some(4.5))], "from x = 4 to the sphere");
+    let (_, _, failed) = of("chain == 3 and lpe \"CS+L\"", &["LDE"]);
+    assert_eq!(failed, [(1, None)], "an expression has no measure");
+    let (step, asked, failed) = of("edges >= 9 or edges == 5", &["LDE", "LDDE"]);
+    assert_eq!((step, asked, failed), (1, 1, vec![(1, Some(2.0))]), "the nearest alternative");
+    let (_, _, failed) = of("any through box(2.25, 1, -1, 2.75, 2, 1)", &["LDDE"]);
+    assert!(failed[0].1.is_some_and(|by| (by - 1.0).abs() < 1e-6), "below the box: {failed:?}");
+    let (_, asked, failed) = of("not edges == 2 and film in rect(0.5, 0, 1, 1)", &["LDE"]);
+    assert_eq!((asked, failed), (2, vec![(0, None), (1, Some(0.25))]), "a negation, and the film");
+    let (_, asked, failed) = of("false and edges > 1", &["LDE"]);
+    assert_eq!((asked, failed), (2, Vec::new()), "no path can");
+    assert_eq!(nearest("edges == 2", &["LDDE", "LDE"]), None, "one matches");
+}
+
+proptest! {
+    /// Whatever the filter, a path that is not wanted lacks something, and one condition less than it
+    /// is asked for at least; what is named are conditions that it indeed does not meet as wanted.
+    #[test]
+    fn a_miss_names_conditions_that_fail(x in -1.0..9.0_f64, radius in 0.1..2.0_f64, edges in 0..6_u32) {
+        let text = format!(
+            "(any in sphere({x}, 0, 0, {radius}) or start is camera) and edges == {edges} and luminance < 1"
+        );
+        let filter = compiled(&text);
+        let path = path("LDTDE");
+        let conditions = filter.conditions(&header(), &path);
+        let miss = filter.miss(&header(), &path, conditions);
+        prop_assert!(!filter.wants(conditions), "the luminance is 1.5");
+        prop_assert!(!miss.failed.is_empty() && miss.failed.len() <= miss.asked as usize);
+        for Shortfall { condition, by } in miss.failed {
+            prop_assert_eq!(conditions >> condition & 1, 0, "it holds");
+            prop_assert!(by.is_none_or(|by| by >= 0.0 && by.is_finite()), "{:?}", by);
+        }
+    }
+}

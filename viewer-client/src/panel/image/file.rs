@@ -2,7 +2,7 @@
 
 use egui::{CollapsingHeader, Grid, RichText, TextEdit, Ui};
 
-use crate::command::{Command, ImageCommand};
+use crate::command::{Command, ImageCommand, Layer};
 use crate::format;
 use crate::imaging::{Comparison, TEV_ADDRESS};
 use crate::world::World;
@@ -74,11 +74,38 @@ impl Files {
         });
         if let Some(comparison) = comparison {
             numbers(ui, &comparison);
+            looks(ui, world, commands);
         } else {
             let size = format!("{} × {}", reference.width, reference.height);
             ui.label(format!("It has {size} pixels, unlike the image; render it in its size."));
         }
     }
+}
+
+/// How different image and reference look, once somebody wants to know.
+fn looks(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    let tip = "FLIP: the mean difference that a person sees who flips between the two, from 0 to 1";
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("FLIP").weak()).on_hover_text(tip);
+        let shown = world.settings.image.layer == Layer::Flip;
+        match world.flip {
+            Some(map) => {
+                let pixels = map.errors.len().max(1) as f64;
+                let effort = format::count(map.steps as f64 / pixels);
+                let text = RichText::new(format!("{:.4}", map.mean)).monospace();
+                ui.label(text).on_hover_text(format!("At {effort} mutations a pixel"));
+            }
+            None if shown => {
+                ui.spinner();
+                ui.label(RichText::new("takes some seconds").small().weak());
+            }
+            None => {
+                if ui.small_button("Measure").on_hover_text(tip).clicked() {
+                    commands.push(Command::Image(ImageCommand::Show(Layer::Flip)));
+                }
+            }
+        }
+    });
 }
 
 fn numbers(ui: &mut Ui, comparison: &Comparison) {

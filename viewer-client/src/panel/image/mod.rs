@@ -9,7 +9,7 @@ use egui::{Button, ColorImage, RichText, TextureHandle, TextureOptions, Ui};
 
 use super::Panel;
 use super::widgets::{Scale, capitalised, empty_state, slider};
-use crate::command::{Command, FilterCommand, ImageCommand, Layer, ToneCurve};
+use crate::command::{Channel, Command, FilterCommand, ImageCommand, Layer, ToneCurve};
 use crate::format;
 use crate::imaging::{self, Sources};
 use crate::region;
@@ -35,6 +35,8 @@ struct Shown {
     reference: usize,
     /// Where the diagnostics lie, if they are shown.
     diagnostics: usize,
+    /// Where the visible differences lie, if they are shown.
+    flip: usize,
 }
 
 impl std::fmt::Debug for ImagePanel {
@@ -60,12 +62,14 @@ impl Panel for ImagePanel {
         if let Some(texture) = &self.texture {
             let hovered = self.frame.show(ui, world, texture.id(), commands);
             readout::show(ui, world, hovered);
+            copy_by_key(ui, world, hovered);
         }
         region_line(ui, world, commands);
         layers(ui, world, commands);
         if let Some(legend) = imaging::legend(&world.settings.image) {
             legend::show(ui, &legend);
         }
+        channels(ui, world, commands);
         exposure(ui, world, commands);
         tone(ui, world, commands);
         zoom(ui, world, commands);
@@ -78,21 +82,37 @@ impl Panel for ImagePanel {
     }
 }
 
+/// Ctrl+C over a pixel copies its raw values.
+fn copy_by_key(ui: &Ui, world: &World<'_>, hovered: Option<[usize; 2]>) {
+    let is_copy = |event: &egui::Event| matches!(event, egui::Event::Copy);
+    let asked = ui.input(|input| input.events.iter().any(is_copy));
+    let writes = ui.ctx().egui_wants_keyboard_input();
+    if let Some(text) = hovered.filter(|_| asked && !writes).and_then(|at| readout::text(world, at))
+    {
+        // The panel has no more to say.
+        ui.input_mut(|input| input.events.retain(|event| !is_copy(event)));
+        ui.ctx().copy_text(text);
+    }
+}
+
 impl ImagePanel {
     fn refresh(&mut self, ui: &Ui, world: &World<'_>) {
         let look = world.settings.image;
         let diagnostics = world.diagnostics().filter(|_| look.layer.is_map());
+        let flip = world.flip.filter(|_| look.layer == Layer::Flip);
         let wanted = Shown {
             revision: world.film.revision(),
             // Where one looks does not change what there is to see.
             look: ImageSettings { zoom: None, centre: [0.5; 2], ..look },
             reference: world.reference.map_or(0, |r| r.pixels.as_ptr().addr()),
             diagnostics: diagnostics.map_or(0, |d| d.maps.r_hat.as_ptr().addr()),
+            flip: flip.map_or(0, |map| map.errors.as_ptr().addr()),
         };
         if self.shown == Some(wanted) && self.texture.is_some() {
             return;
         }
-        let sources = Sources { film: world.film, reference: world.reference, diagnostics };
+        let (film, reference) = (world.film, world.reference);
+        let sources = Sources { film, reference, flip, diagnostics };
         let plain = ImageSettings { layer: Layer::Image, ..look };
         let bytes = imaging::develop(sources, &look).or_else(|| imaging::develop(sources, &plain));
         let image = ColorImage::from_rgb(world.film.size(), &bytes.unwrap_or_default());
@@ -158,6 +178,7 @@ pub(super) fn layer_button(
     let chosen = world.settings.image.layer == layer;
     let label = match layer {
         Layer::Disagreement => "R-hat".to_owned(),
+        Layer::Flip => "FLIP".to_owned(),
         other => capitalised(&other.to_string()),
     };
     let button = Button::selectable(chosen, label);
@@ -177,12 +198,38 @@ fn meaning(layer: Layer) -> &'static str {
         Layer::Reference => "The image to compare with",
         Layer::Difference => "Orange is brighter than the reference, blue darker",
         Layer::Error => "Where the image is still wrong, relative to the reference",
+        Layer::Flip => {
+            "FLIP: how different a person sees image and reference who flips between them"
+        }
         Layer::Acceptance => "Mean acceptance probability of proposals made from paths to here",
         Layer::Dwell => "How long chains stay at a path to here, in steps",
         Layer::Visits => "How often chains come here",
         Layer::Spread => "Relative standard error of the light here, from how chains differ",
         Layer::Disagreement => "R-hat: whether chains agree how much light comes here",
     }
+}
+
+/// Which part of the light is shown, where it is light that is shown.
+fn channels(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    let look = &world.settings.image;
+    if !matches!(look.layer, Layer::Image | Layer::Reference) {
+        return;
+    }
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        for (channel, label, tip) in [
+            (Channel::Rgb, "RGB", "All of the light"),
+            (Channel::Red, "R", "Red alone, as grey"),
+            (Channel::Green, "G", "Green alone, as grey"),
+            (Channel::Blue, "B", "Blue alone, as grey"),
+            (Channel::Luminance, "Y", "Luminance, as grey"),
+        ] {
+            let button = ui.selectable_label(look.channel == channel, label).on_hover_text(tip);
+            if button.clicked() {
+                commands.push(Command::Image(ImageCommand::Channel(channel)));
+            }
+        }
+    });
 }
 
 fn exposure(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {

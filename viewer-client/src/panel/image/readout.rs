@@ -44,6 +44,22 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, hovered: Option<[usize; 2]>) 
     });
 }
 
+/// The raw values of a pixel as text: its place, its radiance and, where there is one, that of the
+/// reference.
+pub(super) fn text(world: &World<'_>, [x, y]: [usize; 2]) -> Option<String> {
+    let line = |name: &str, rgb: Rgb| {
+        format!("{name}\t{:e}\t{:e}\t{:e}\t{:e}\n", rgb.r, rgb.g, rgb.b, rgb.luminance())
+    };
+    let mut text = format!("{x}, {y}\tR\tG\tB\tY\n");
+    text.push_str(&line("image", Rgb::from(world.film.pixel(x, y)?)));
+    let reference = world.reference.filter(|r| r.fits(world.film)).and_then(|r| r.pixel(x, y));
+    text.extend(reference.map(|reference| line("reference", reference)));
+    if let Some((name, value)) = map_value(world, x, y) {
+        text.extend([name.as_str(), "\t", value.as_str(), "\n"]);
+    }
+    Some(text)
+}
+
 /// What the map that is shown says of a pixel's tile.
 fn map_value(world: &World<'_>, x: usize, y: usize) -> Option<(String, String)> {
     let (layer, diagnostics) = (world.settings.image.layer, world.diagnostics()?);

@@ -4,8 +4,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::Stage;
+use crate::command::WindowSide;
 use crate::command::{CameraCommand, CloudCommand, Command, SceneCommand, Switch};
-use crate::panel::{LEFT_WIDTH, cloud, scene};
+use crate::panel::{cloud, scene};
 
 #[test]
 fn the_cloud_panel_speaks_in_commands() {
@@ -41,7 +42,8 @@ fn long_numbers_do_not_widen_their_panel() {
     stage.settings.cloud.budget_mib = 65_536;
     let harness = Harness::builder().with_size(egui::vec2(800.0, 700.0)).build_ui_state(
         |ui, (stage, widths): &mut (Stage, Vec<f32>)| {
-            let left = egui::Panel::left("left").default_size(LEFT_WIDTH);
+            let width = f32::from(stage.settings.layout.width(WindowSide::Left));
+            let left = egui::Panel::left("left").default_size(width);
             let shown = left.show(ui, |ui| stage.show(ui));
             widths.push(shown.response.rect.width());
         },

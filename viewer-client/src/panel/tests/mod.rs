@@ -4,6 +4,7 @@
 mod bars;
 mod chains;
 mod cloud;
+mod habits;
 mod image;
 mod paths;
 mod viewport;
@@ -31,6 +32,7 @@ pub(super) struct Stage {
     pub(super) store: Store,
     pub(super) film: Film,
     pub(super) reference: Option<Reference>,
+    pub(super) flip: Option<crate::imaging::FlipMap>,
     pub(super) selection: Option<Selection>,
     pub(super) recent: Vec<String>,
     pub(super) model: Option<crate::model::Model>,
@@ -49,6 +51,7 @@ impl Stage {
             store: Store::new(64 << 20),
             film: Film::default(),
             reference: None,
+            flip: None,
             selection: None,
             recent: Vec::new(),
             model: None,
@@ -65,17 +68,16 @@ impl Stage {
             .build_ui_state(|ui, stage: &mut Self| stage.show(ui), self)
     }
 
-    /// Shows the panel, and keeps what it says.
-    pub(super) fn show(&mut self, ui: &mut Ui) {
-        let Some(mut panel) = self.panel.take() else { return };
-        let mut said = std::mem::take(&mut self.said);
-        let world = World {
+    /// All that the panel may read.
+    pub(super) fn world(&self) -> World<'_> {
+        World {
             settings: &self.settings,
             camera: &self.camera,
             status: &self.status,
             store: &self.store,
             film: &self.film,
             reference: self.reference.as_ref(),
+            flip: self.flip.as_ref(),
             selection: self.selection.as_ref(),
             moment: self.status.steering.focus.moment(self.scrub),
             scrub: self.scrub,
@@ -84,7 +86,14 @@ impl Stage {
             counted: None,
             model: self.model.as_ref(),
             now: Instant::now(),
-        };
+        }
+    }
+
+    /// Shows the panel, and keeps what it says.
+    pub(super) fn show(&mut self, ui: &mut Ui) {
+        let Some(mut panel) = self.panel.take() else { return };
+        let mut said = std::mem::take(&mut self.said);
+        let world = self.world();
         panel.ui(ui, &world, &mut said);
         self.said = said;
         self.panel = Some(panel);

@@ -3,13 +3,15 @@
 use egui::{Key, PointerButton, Response, Ui, Vec2};
 
 use crate::command::{CameraCommand, Command};
-use crate::keys::KeyPreset;
+use crate::keys::{KeyPreset, MousePreset};
 use crate::world::World;
 
 /// Degrees the view turns for a drag over the height of the viewport.
 const TURN: f32 = 200.0;
 /// Points of the wheel that come closer by a factor of e.
 const WHEEL: f32 = 320.0;
+/// Logarithm of how much closer a drag over the height of the viewport comes.
+const CLOSER: f32 = 3.0;
 /// Sizes of the scene flown a second.
 const SPEED: f32 = 0.35;
 /// How much faster with Shift.
@@ -42,14 +44,13 @@ fn drag(ui: &Ui, response: &Response, world: &World<'_>) -> Option<CameraCommand
     if delta == Vec2::ZERO {
         return None;
     }
-    let shift = ui.input(|input| input.modifiers.shift);
-    let secondary = response.dragged_by(PointerButton::Secondary);
-    let classic = world.settings.layout.keys == KeyPreset::Classic;
-    if (secondary && !classic) || shift {
-        return Some(CameraCommand::Pan(delta.x, -delta.y));
-    }
-    if classic && !secondary {
-        return None;
+    match dragging(ui, response, world)? {
+        Dragging::Turn => {}
+        Dragging::Shift => return Some(CameraCommand::Pan(delta.x, -delta.y)),
+        Dragging::Closer => {
+            let factor = (CLOSER * (delta.x - delta.y)).exp().clamp(0.1, 10.0);
+            return Some(CameraCommand::Zoom { factor, at: [0.0; 2] });
+        }
     }
     // Screens count downwards; a drag to the right turns the scene to the right.
     Some(if world.camera.is_flying() {
@@ -57,6 +58,39 @@ fn drag(ui: &Ui, response: &Response, world: &World<'_>) -> Option<CameraCommand
     } else {
         CameraCommand::Orbit(TURN * delta.x, -TURN * delta.y)
     })
+}
+
+/// What a drag does to the camera.
+enum Dragging {
+    Turn,
+    Shift,
+    Closer,
+}
+
+/// What this drag does; `None` where it is none of the camera's.
+fn dragging(ui: &Ui, response: &Response, world: &World<'_>) -> Option<Dragging> {
+    let modifiers = ui.input(|input| input.modifiers);
+    let [left, middle, right] =
+        [PointerButton::Primary, PointerButton::Middle, PointerButton::Secondary]
+            .map(|button| response.dragged_by(button));
+    if world.settings.layout.keys == KeyPreset::Classic {
+        return match () {
+            () if modifiers.shift => Some(Dragging::Shift),
+            () if right => Some(Dragging::Turn),
+            () => None,
+        };
+    }
+    match world.settings.layout.mouse {
+        MousePreset::Rerun if right || modifiers.shift => Some(Dragging::Shift),
+        MousePreset::Rerun => Some(Dragging::Turn),
+        MousePreset::Blender if middle && modifiers.shift => Some(Dragging::Shift),
+        MousePreset::Blender if middle && modifiers.command => Some(Dragging::Closer),
+        MousePreset::Blender => middle.then_some(Dragging::Turn),
+        MousePreset::Maya if !modifiers.alt => None,
+        MousePreset::Maya if left => Some(Dragging::Turn),
+        MousePreset::Maya if middle => Some(Dragging::Shift),
+        MousePreset::Maya => right.then_some(Dragging::Closer),
+    }
 }
 
 fn wheel(ui: &Ui, response: &Response) -> Option<CameraCommand> {

@@ -1,0 +1,278 @@
+//! The filter's text as a tree of conditions that are put together by hand.
+
+mod add;
+mod leaf;
+
+use common::{Filter, VertexTest};
+use egui::{Button, ComboBox, Label, RichText, Ui};
+
+use super::filter::complete::Vocabulary;
+use super::filter::vocabulary;
+use crate::command::FilterCommand;
+use crate::tree::negated;
+use crate::world::World;
+
+/// What conditions are about: names, and places.
+#[derive(Debug)]
+pub(super) struct Context {
+    names: Vocabulary,
+    /// A place in the scene and a length, in the units of the file: where a new region lies.
+    centre: [f64; 3],
+    radius: f64,
+}
+
+impl Context {
+    fn of(world: &World<'_>) -> Self {
+        let bounds = world.camera.bounds();
+        let names = world.names();
+        let middle = 0.5 * (bounds.min + bounds.max);
+        let scale = names.frame.map_or(1.0, |frame| frame.scale);
+        Self {
+            names: vocabulary(world),
+            centre: names.world(middle.into()).to_array(),
+            radius: f64::from(bounds.radius()) * 0.1 / scale,
+        }
+    }
+}
+
+/// What the user did with a part of the tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Deed {
+    Nothing,
+    Changed,
+    Removed,
+}
+
+impl Deed {
+    fn or(self, other: Self) -> Self {
+        if self == Self::Nothing { other } else { self }
+    }
+
+    fn changed(changed: bool) -> Self {
+        if changed { Self::Changed } else { Self::Nothing }
+    }
+}
+
+/// Shows the tree of the text; changes make a new text.
+pub(super) fn ui(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(FilterCommand)) {
+    let Ok(mut filter) = Filter::parse(&world.settings.filter.text) else { return };
+    let context = Context::of(world);
+    let deed = if filter == Filter::Constant(true) {
+        Deed::Nothing
+    } else {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        node(ui, &mut filter, &context, 0)
+    };
+    if deed == Deed::Removed {
+        push(FilterCommand::text(String::new()));
+        return;
+    }
+    let mut changed = deed == Deed::Changed;
+    ui.horizontal(|ui| {
+        let is_group = matches!(filter, Filter::And(_) | Filter::Or(_));
+        if is_group {
+            return;
+        }
+        if let Some(more) = add::menu(ui, "+ Condition", &context) {
+            filter = match std::mem::take(&mut filter) {
+                Filter::Constant(true) => more,
+                first => Filter::And(vec![first, more]),
+            };
+            changed = true;
+        }
+    });
+    if changed {
+        push(FilterCommand::text(filter.to_string()));
+    }
+}
+
+/// A part of the tree, `depth` levels below its root.
+fn node(ui: &mut Ui, filter: &mut Filter, context: &Context, depth: usize) -> Deed {
+    match filter {
+        Filter::And(_) | Filter::Or(_) => group(ui, filter, false, context, depth),
+        Filter::Not(inner) if matches!(**inner, Filter::And(_) | Filter::Or(_)) => {
+            let deed = group(ui, inner, true, context, depth);
+            turn_if_asked(filter, deed)
+        }
+        Filter::Not(inner) => line(ui, inner, true, context).apply(filter),
+        _ => {
+            let mut own = std::mem::take(filter);
+            let deed = line(ui, &mut own, false, context);
+            *filter = own;
+            deed.apply(filter)
+        }
+    }
+}
+
+/// What the user did with a line, which stands alone or below a `not`.
+#[derive(Debug)]
+struct LineDeed {
+    deed: Deed,
+    turned: bool,
+    /// Another condition, and whether either is enough.
+    more: Option<(Filter, bool)>,
+}
+
+impl LineDeed {
+    fn apply(self, filter: &mut Filter) -> Deed {
+        if self.turned {
+            *filter = negated(std::mem::take(filter));
+        }
+        if let Some((more, either)) = self.more {
+            let parts = vec![std::mem::take(filter), more];
+            *filter = if either { Filter::Or(parts) } else { Filter::And(parts) };
+            return Deed::Changed;
+        }
+        if self.turned { self.deed.or(Deed::Changed) } else { self.deed }
+    }
+}
+
+/// A condition.
+fn line(ui: &mut Ui, filter: &mut Filter, negative: bool, context: &Context) -> LineDeed {
+    let mut done = LineDeed { deed: Deed::Nothing, turned: false, more: None };
+    ui.horizontal_wrapped(|ui| {
+        let tip = "Take this condition away";
+        if ui.small_button("×").on_hover_text(tip).clicked() {
+            done.deed = Deed::Removed;
+        }
+        let not = Button::selectable(negative, "not").small();
+        done.turned = ui.add(not).on_hover_text("Want the opposite").clicked();
+        match &mut *filter {
+            Filter::Leaf(leaf) => {
+                let changed = leaf::edit(ui, leaf, context);
+                done.deed = done.deed.or(Deed::changed(changed));
+            }
+            other => {
+                fixed(ui, other.to_string());
+            }
+        }
+        done.more = more(ui, filter, context);
+    });
+    done
+}
+
+/// What else can be done with a condition: another one beside it, and whether either is enough.
+fn more(ui: &mut Ui, filter: &Filter, context: &Context) -> Option<(Filter, bool)> {
+    let menu = ui.menu_button("…", |ui| {
+        let and = ui.menu_button("and …", |ui| add::choices(ui, context)).inner.flatten();
+        let or = ui.menu_button("or …", |ui| add::choices(ui, context)).inner.flatten();
+        if ui.button("Copy as text").clicked() {
+            ui.ctx().copy_text(filter.to_string());
+            ui.close();
+        }
+        and.map(|other| (other, false)).or_else(|| or.map(|other| (other, true)))
+    });
+    menu.response.on_hover_text("Put it together with another condition, or copy it");
+    menu.inner.flatten()
+}
+
+/// Several parts, and how they are joined.
+fn group(
+    ui: &mut Ui,
+    filter: &mut Filter,
+    negative: bool,
+    context: &Context,
+    depth: usize,
+) -> Deed {
+    let mut either = matches!(filter, Filter::Or(_));
+    let (Filter::And(mut parts) | Filter::Or(mut parts)) = std::mem::take(filter) else {
+        return Deed::Nothing;
+    };
+    let mut deed = Deed::Nothing;
+    let mut turned = false;
+    ui.horizontal(|ui| {
+        if ui.small_button("×").on_hover_text("Take all of these away").clicked() {
+            deed = Deed::Removed;
+        }
+        let not = Button::selectable(negative, "not").small();
+        turned = ui.add(not).on_hover_text("Want the opposite of all of it").clicked();
+        let before = either;
+        ComboBox::from_id_salt(("join", depth))
+            .width(76.0)
+            .selected_text(if either { "any of" } else { "all of" })
+            .show_ui(ui, |ui| {
+                ui.selectable_value(&mut either, false, "all of");
+                ui.selectable_value(&mut either, true, "any of");
+            })
+            .response
+            .on_hover_text("Whether a path must meet all of these, or any");
+        deed = deed.or(Deed::changed(before != either));
+        if let Some(more) = add::menu(ui, "+", context) {
+            parts.push(more);
+            deed = deed.or(Deed::Changed);
+        }
+    });
+    let mut gone = None;
+    ui.indent(("parts", depth), |ui| {
+        for (index, part) in parts.iter_mut().enumerate() {
+            ui.push_id(index, |ui| match node(ui, part, context, depth + 1) {
+                Deed::Removed => gone = Some(index),
+                other => deed = deed.or(other),
+            });
+        }
+    });
+    if let Some(index) = gone {
+        parts.remove(index);
+        deed = deed.or(Deed::Changed);
+    }
+    *filter = match parts.len() {
+        0 => return Deed::Removed,
+        1 => parts.remove(0),
+        _ if either => Filter::Or(parts),
+        _ => Filter::And(parts),
+    };
+    if turned {
+        *filter = Filter::Not(Box::new(std::mem::take(filter)));
+        return deed.or(Deed::Changed);
+    }
+    deed
+}
+
+/// A group below a `not` that was turned is below two of them: neither is needed.
+fn turn_if_asked(filter: &mut Filter, deed: Deed) -> Deed {
+    if let Filter::Not(inner) = filter
+        && let Filter::Not(twice) = inner.as_mut()
+    {
+        *filter = std::mem::take(twice);
+    }
+    deed
+}
+
+/// The tests of one vertex that are joined, each with its own line.
+fn joined_tests(
+    ui: &mut Ui,
+    parts: &mut Vec<VertexTest>,
+    either: &mut bool,
+    context: &Context,
+) -> bool {
+    let mut changed = false;
+    let mut gone = None;
+    for (index, part) in parts.iter_mut().enumerate() {
+        ui.push_id(index, |ui| {
+            if index > 0 {
+                let word = if *either { "or" } else { "and" };
+                let tip = "At the same vertex; a click changes between and, or";
+                if ui.small_button(word).on_hover_text(tip).clicked() {
+                    *either = !*either;
+                    changed = true;
+                }
+            }
+            changed |= leaf::edit_test(ui, part, context);
+            if ui.small_button("×").on_hover_text("Take this test away").clicked() {
+                gone = Some(index);
+            }
+        });
+    }
+    if let Some(index) = gone {
+        parts.remove(index);
+    }
+    changed || gone.is_some()
+}
+
+/// A text that stands for something that cannot be edited here.
+fn fixed(ui: &mut Ui, text: String) {
+    ui.add(Label::new(RichText::new(text).monospace().size(11.0)).wrap());
+}
+
+#[cfg(test)]
+mod tests;

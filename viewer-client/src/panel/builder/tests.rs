@@ -1,0 +1,131 @@
+//! The tree under a user's hand: every condition can be made without writing.
+
+use common::Filter;
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use super::*;
+use crate::command::Command;
+use crate::model::Model;
+use crate::panel::Panel;
+use crate::panel::tests::Stage;
+use crate::synthetic::{mesh, welcome};
+
+/// The builder alone.
+#[derive(Debug)]
+struct Alone;
+
+impl Panel for Alone {
+    fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+        super::ui(ui, world, &mut |command| commands.push(Command::Filter(command)));
+    }
+}
+
+fn builder(text: &str) -> Harness<'static, Stage> {
+    let mut stage = Stage::new(Alone);
+    stage.status.welcome(welcome());
+    stage.model = Model::new(mesh());
+    stage.settings.filter.text = text.to_owned();
+    let mut harness = stage.harness();
+    harness.run_steps(3);
+    harness
+}
+
+/// The text after the panel's commands.
+fn text(harness: &mut Harness<'_, Stage>) -> String {
+    harness.run_steps(3);
+    for command in std::mem::take(&mut harness.state_mut().said) {
+        if let Command::Filter(command) = command {
+            harness.state_mut().settings.filter.apply(&command);
+        }
+    }
+    harness.run_steps(3);
+    harness.state().settings.filter.text.clone()
+}
+
+fn click(harness: &mut Harness<'_, Stage>, label: &str) -> String {
+    harness.get_all_by_label(label).last().expect(label).click();
+    text(harness)
+}
+
+/// Follows a menu into its submenus.
+fn choose(harness: &mut Harness<'_, Stage>, labels: &[&str]) -> String {
+    let mut last = String::new();
+    for label in labels {
+        last = click(harness, label);
+    }
+    last
+}
+
+#[test]
+fn every_condition_can_be_made_from_the_menu() {
+    for (labels, begins) in [
+        (["Sphere", ""], "any in sphere("),
+        (["Box", ""], "any in box("),
+        (["Segment through a box", ""], "any through box("),
+        (["Light path expression", ""], "lpe \"C.*L\""),
+        (["Part of the film", ""], "film in rect(0.25, 0.25, 0.75, 0.75)"),
+        (["Object", "room"], "any on object \"room\""),
+        (["Material", "wall"], "any on material \"wall\""),
+        (["Light", "lamp"], "start on light \"lamp\""),
+        (["Scattering", "glossy"], "any is glossy"),
+        (["Number", "acceptance"], "acceptance <= 0.1"),
+        (["Strategy", "lens"], "strategy == \"lens\""),
+    ] {
+        let mut harness = builder("");
+        click(&mut harness, "+ Condition");
+        let labels: Vec<&str> = labels.into_iter().filter(|label| !label.is_empty()).collect();
+        let text = choose(&mut harness, &labels);
+        assert!(text.starts_with(begins), "{labels:?} make `{text}`");
+        assert!(Filter::parse(&text).is_ok(), "{text}");
+    }
+}
+
+#[test]
+fn groups_are_made_joined_turned_and_dissolved() {
+    let mut harness = builder("edges >= 3");
+    click(&mut harness, "+ Condition");
+    let two = choose(&mut harness, &["Scattering", "glossy"]);
+    assert_eq!(two, "edges >= 3 and any is glossy", "both");
+    harness.get_all_by_role(Role::ComboBox).next().expect("how they are joined").click();
+    harness.run_steps(3);
+    let either = click(&mut harness, "any of");
+    assert_eq!(either, "edges >= 3 or any is glossy", "either");
+    // The first `not` is that of the whole group.
+    harness.get_all_by_label("not").next().expect("a group").click();
+    assert_eq!(text(&mut harness), "not (edges >= 3 or any is glossy)", "neither");
+    harness.get_all_by_label("not").next().expect("a group").click();
+    assert_eq!(text(&mut harness), "edges >= 3 or any is glossy", "and back");
+    assert_eq!(click(&mut harness, "not"), "edges >= 3 or not any is glossy", "the last");
+    // A group within the group.
+    harness.get_all_by_label("…").next().expect("a condition").click();
+    harness.run_steps(3);
+    let nested = choose(&mut harness, &["and …", "Number", "dwell"]);
+    assert_eq!(nested, "edges >= 3 and dwell >= 100 or not any is glossy", "a group");
+    assert_eq!(click(&mut harness, "×"), "edges >= 3 and dwell >= 100", "without the last");
+    harness.get_all_by_label("×").next().expect("a group").click();
+    assert_eq!(text(&mut harness), "", "all paths");
+}
+
+#[test]
+fn text_and_tree_are_the_same_filter() {
+    for filter in [
+        "any in sphere(0, 1, 0, 0.5) and start on light \"lamp\"",
+        "any (on material \"wall\" and in box(0, 0, 0, 1, 1, 1)) and edges in 3..6",
+        "not (all through sphere(1, 2, 3, 4) or lpe \"C.*<RD>L\")",
+        "strategy in (\"lens\", \"seed\") or film in rect(0, 0, 0.5, 0.5)",
+        "any not (is diffuse or is glossy) and chain != 3 and false",
+    ] {
+        let mut harness = builder(filter);
+        assert_eq!(text(&mut harness), filter, "showing it changes nothing");
+        assert_eq!(harness.state().said, [], "{filter}");
+    }
+    let mut harness = builder("any (on material \"wall\" and is diffuse)");
+    assert_eq!(click(&mut harness, "and"), "any (on material \"wall\" or is diffuse)", "a click");
+    harness.get_all_by_label("&").next();
+    let mut harness = builder("any is diffuse");
+    click(&mut harness, "&");
+    let same = click(&mut harness, "on material wall");
+    assert_eq!(same, "any (is diffuse and on material \"wall\")", "at the same vertex");
+}

@@ -1,0 +1,230 @@
+//! What the daemon found, and what is the matter where that is nothing.
+
+use common::{
+    Comparison, ExplorerCommand, Filter, FilterCounts, Leaf, NearestMiss, Order, Seed, Shortfall,
+    VertexTest, Volume,
+};
+use egui::{Label, RichText, Ui};
+
+use crate::command::{Command, FilterCommand, Switch};
+use crate::format;
+use crate::panel::widgets::row;
+use crate::settings::FilterSettings;
+use crate::theme;
+use crate::tree::{self, Source};
+use crate::world::World;
+
+/// How much larger than needed a region becomes that is widened for a path.
+const MARGIN: f64 = 1.02;
+
+/// Shows counts and, where nothing matches, why and what to do.
+pub(super) fn show(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    let of_daemon = || world.status.statistics.as_ref().map(|s| &s.filter);
+    let Some(counts) = world.counted.or_else(of_daemon) else { return };
+    let reply = world.status.filter.as_ref();
+    let bad = theme::bad(ui.visuals().dark_mode);
+    if let Some(error) = reply.and_then(|reply| reply.error.as_ref()) {
+        ui.add(Label::new(RichText::new(format!("Refused: {}", error.message)).color(bad)).wrap());
+    }
+    let tip = "Since the filter was set; matching and seen are the daemon's";
+    ui.add(Label::new(text(world, counts)).wrap()).on_hover_text(tip);
+    row(ui, "Energy", "Share of the image's light that matching paths carry", |ui| {
+        ui.label(RichText::new(energy(counts)).monospace().strong());
+    });
+    let conditions = match (world.playback, world.store.filter()) {
+        (Some(_), Some(filter)) => filter.condition_texts(),
+        _ => reply.map(|reply| reply.conditions.as_slice()).unwrap_or_default(),
+    };
+    if counts.matched == 0 && counts.seen > 0 && !conditions.is_empty() {
+        nothing_found(ui, world, (counts, conditions), commands);
+    }
+}
+
+/// How many of how many paths.
+pub(crate) fn text(world: &World<'_>, counts: &FilterCounts) -> String {
+    let shown = (world.settings.cloud.shown as usize).min(world.store.matched());
+    let count = |n: u64| format::count(n as f64);
+    format!(
+        "{} shown of {} matching of {} seen",
+        format::count(shown as f64),
+        count(counts.matched),
+        count(counts.seen),
+    )
+}
+
+/// The share of the energy, with its error.
+pub(crate) fn energy(counts: &FilterCounts) -> String {
+    let error = match counts.energy_error {
+        error if error.is_finite() && error > 0.0 => format!(" ± {:.2}", 100.0 * error),
+        _ => String::new(),
+    };
+    format!("{:.2}{error} %", 100.0 * counts.energy_share)
+}
+
+/// How near paths came to matching, and what to do.
+fn nothing_found(
+    ui: &mut Ui,
+    world: &World<'_>,
+    (counts, conditions): (&FilterCounts, &[String]),
+    commands: &mut Vec<Command>,
+) {
+    ui.add_space(4.0);
+    let busy = theme::busy(ui.visuals().dark_mode);
+    ui.label(RichText::new("No path matches").strong().color(busy));
+    if let Some(miss) = &counts.nearest {
+        nearest(ui, world, (miss, conditions), commands);
+    }
+    ui.horizontal_wrapped(|ui| {
+        if !world.settings.filter.inverted
+            && ui.button("Invert").on_hover_text("Show the paths that are left out").clicked()
+        {
+            commands.push(Command::Filter(FilterCommand::Invert(Switch::On)));
+        }
+        if ui.button("Show all paths").on_hover_text("Switch the filter off").clicked() {
+            commands.push(Command::Filter(FilterCommand::Enable(Switch::Off)));
+        }
+    });
+    ui.label(RichText::new("Alone, each would let through:").small().weak());
+    for (condition, &count) in conditions.iter().zip(&counts.conditions) {
+        let share = format::percent(count as f64, counts.seen as f64);
+        let text = RichText::new(format!("{share:>8}  {condition}")).monospace().small();
+        let text = if count == 0 { text.strong() } else { text };
+        ui.add(Label::new(text).truncate()).on_hover_text(condition);
+    }
+}
+
+/// The path that came nearest, what it lacks, and what would let it through.
+fn nearest(
+    ui: &mut Ui,
+    world: &World<'_>,
+    (miss, conditions): (&NearestMiss, &[String]),
+    commands: &mut Vec<Command>,
+) {
+    ui.add(Label::new(explained(miss, conditions, &world.settings.filter)).wrap());
+    let settings = &world.settings.filter;
+    for failed in &miss.failed {
+        ui.horizontal_wrapped(|ui| {
+            for (label, tip, command) in remedies(settings, failed) {
+                if ui.button(label).on_hover_text(tip).clicked() {
+                    commands.push(Command::Filter(command));
+                }
+            }
+        });
+    }
+    if world.playback.is_none() {
+        let tip = "Let the explorer start from this path, and step towards what is wanted";
+        if ui.button("Explore from the nearest path").on_hover_text(tip).clicked() {
+            let seed = ExplorerCommand::Seed(Seed::Path(miss.path));
+            commands.push(Command::Order(Order::Explorer(seed)));
+        }
+    }
+}
+
+/// The nearest miss in words.
+fn explained(miss: &NearestMiss, conditions: &[String], settings: &FilterSettings) -> String {
+    if miss.failed.is_empty() {
+        return "No path can match: `false` is asked for.".to_owned();
+    }
+    let held = miss.asked.saturating_sub(miss.failed.len() as u32);
+    let mut text = match miss.asked {
+        1 => "The nearest path".to_owned(),
+        asked => format!("{held} of {asked} conditions hold for the nearest path;"),
+    };
+    for (i, failed) in miss.failed.iter().enumerate() {
+        let number = failed.condition as usize;
+        let what = match settings.source(number) {
+            Some(Source::Sphere(number)) => format!("sphere {}", number + 1),
+            _ => conditions.get(number).map_or_else(String::new, |text| format!("`{text}`")),
+        };
+        text.push_str(if i > 0 { ", and " } else { " " });
+        let by = failed.by.map(|by| format!(" by {}", format::value(by as f32)));
+        text.extend(["fails ", &what, by.as_deref().unwrap_or_default()]);
+    }
+    text.push('.');
+    text
+}
+
+/// A button's label, its tip, and what it does.
+type Remedy = (String, &'static str, FilterCommand);
+
+/// What would let a path through that lacks this.
+fn remedies(settings: &FilterSettings, failed: &Shortfall) -> Vec<Remedy> {
+    let drop = "Ask for this no longer";
+    match settings.source(failed.condition as usize) {
+        Some(Source::Sphere(number)) => {
+            let name = format!("sphere {}", number + 1);
+            let wider = failed.by.zip(settings.selectors.get(number)).map(|(by, sphere)| {
+                let [x, y, z, radius] = sphere.place;
+                let place = [x, y, z, (radius + by) * MARGIN];
+                let tip = "Make it just large enough for the nearest path";
+                (format!("Widen {name}"), tip, FilterCommand::Move(number as u32, place))
+            });
+            let delete = (format!("Delete {name}"), drop, FilterCommand::Delete(number as u32));
+            wider.into_iter().chain([delete]).collect()
+        }
+        Some(Source::Text(number)) => {
+            let Ok(filter) = Filter::parse(&settings.text) else { return Vec::new() };
+            let leaf = tree::leaves(&filter).get(number).map(|leaf| (*leaf).clone());
+            let wider = leaf.zip(failed.by).and_then(|(leaf, by)| {
+                let (label, wide) = widened(&leaf, by)?;
+                let text = tree::with_leaf(filter.clone(), number, &|_| wide.clone()).to_string();
+                let tip = "Ask for no more than the nearest path has";
+                Some((label.to_owned(), tip, FilterCommand::text(text)))
+            });
+            let text = tree::without_leaf(filter, number).to_string();
+            let without = ("Drop this condition".to_owned(), drop, FilterCommand::text(text));
+            wider.into_iter().chain([without]).collect()
+        }
+        Some(Source::Kept(number)) => {
+            let Some(kept) = settings.kept.get(number) else { return Vec::new() };
+            let off = FilterCommand::Use(kept.name.clone(), Switch::Off);
+            vec![(format!("Switch off {}", kept.name), "A kept filter asks for this", off)]
+        }
+        None => Vec::new(),
+    }
+}
+
+/// The condition, widened by what a path misses, and what that is called.
+fn widened(leaf: &Leaf, by: f64) -> Option<(&'static str, Leaf)> {
+    match leaf.clone() {
+        Leaf::Vertex { place, test: VertexTest::Inside(volume) } => {
+            let test = VertexTest::Inside(grown(volume, by));
+            Some((name_of(volume), Leaf::Vertex { place, test }))
+        }
+        Leaf::Segment { place, volume } => {
+            Some((name_of(volume), Leaf::Segment { place, volume: grown(volume, by) }))
+        }
+        Leaf::Film { min, max } => {
+            let by = by * MARGIN;
+            let (min, max) = (min.map(|x| (x - by).max(0.0)), max.map(|x| (x + by).min(1.0)));
+            Some(("Widen the rectangle", Leaf::Film { min, max }))
+        }
+        Leaf::Number { attribute, comparison, value } => {
+            let by = if attribute.is_whole() { by } else { by * MARGIN };
+            let (comparison, value) = match comparison {
+                Comparison::AtLeast | Comparison::Greater => (Comparison::AtLeast, value - by),
+                Comparison::AtMost | Comparison::Less => (Comparison::AtMost, value + by),
+                Comparison::Equal | Comparison::NotEqual => return None,
+            };
+            Some(("Loosen the bound", Leaf::Number { attribute, comparison, value }))
+        }
+        _ => None,
+    }
+}
+
+fn name_of(volume: Volume) -> &'static str {
+    match volume {
+        Volume::Sphere { .. } => "Widen the sphere",
+        Volume::Box { .. } => "Widen the box",
+    }
+}
+
+/// The region, larger by `by` on every side.
+fn grown(volume: Volume, by: f64) -> Volume {
+    match volume {
+        Volume::Sphere { centre, radius } => {
+            Volume::Sphere { centre, radius: (radius + by) * MARGIN }
+        }
+        Volume::Box { min, max } => Volume::Box { min: min - by * MARGIN, max: max + by * MARGIN },
+    }
+}

@@ -1,0 +1,90 @@
+//! Filters that have names: switched on and off, turned round, written into the text.
+
+use egui::{Align, Button, Label, Layout, RichText, TextEdit, Ui};
+
+use crate::command::{FilterCommand, MOST_KEPT, Switch, kept_name};
+use crate::settings::KeptFilter;
+use crate::world::World;
+
+/// Keeps filters.
+#[derive(Debug, Default)]
+pub(super) struct Kept {
+    /// The name that is being written.
+    name: String,
+}
+
+impl Kept {
+    pub(super) fn ui(
+        &mut self,
+        ui: &mut Ui,
+        world: &World<'_>,
+        filter: &mut impl FnMut(FilterCommand),
+    ) {
+        let settings = &world.settings.filter;
+        for kept in &settings.kept {
+            line(ui, kept, filter);
+        }
+        let any = !settings.text.is_empty() || !settings.selectors.is_empty();
+        if !any {
+            if settings.kept.is_empty() {
+                let text = "A filter can be kept under a name, and switched on again later.";
+                ui.add(Label::new(RichText::new(text).small().weak()).wrap());
+            }
+            return;
+        }
+        ui.horizontal(|ui| {
+            let width = (ui.available_width() - 62.0).max(60.0);
+            let edit = TextEdit::singleline(&mut self.name).hint_text("Name").desired_width(width);
+            let edit = ui.add(edit);
+            edit.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Name of the filter")
+            });
+            let entered = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+            let name = kept_name(&self.name);
+            let is_new = |name: &String| settings.kept.iter().all(|kept| kept.name != *name);
+            let full = settings.kept.len() >= MOST_KEPT && name.as_ref().is_some_and(is_new);
+            let keep = ui.add_enabled(name.is_some() && !full, Button::new("Keep"));
+            let keep = keep
+                .on_hover_text("Keep text and spheres under this name")
+                .on_disabled_hover_text(if full {
+                    "There is no room for more; forget one first"
+                } else {
+                    "Write a name of at most 40 letters"
+                });
+            if let Some(name) = name.filter(|_| keep.clicked() || (entered && !full)) {
+                filter(FilterCommand::Keep(name));
+                self.name.clear();
+            }
+        });
+    }
+}
+
+/// A kept filter.
+fn line(ui: &mut Ui, kept: &KeptFilter, filter: &mut impl FnMut(FilterCommand)) {
+    let name = || kept.name.clone();
+    ui.horizontal(|ui| {
+        let mut on = kept.on;
+        let tip = format!("Holds beside what is above\n{}", kept.text);
+        if ui.checkbox(&mut on, "").on_hover_text(tip).changed() {
+            filter(FilterCommand::Use(name(), Switch::to(on)));
+        }
+        let not = Button::selectable(kept.inverted, "not").small();
+        if ui.add(not).on_hover_text("Want the opposite").clicked() {
+            filter(FilterCommand::Reverse(name(), Switch::Toggle));
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let forget = ui.small_button("×").on_hover_text(format!("Forget {}", kept.name));
+            let tip = "Write it into the text above, to change it";
+            let edit = ui.small_button("Edit").on_hover_text(tip);
+            if forget.clicked() {
+                filter(FilterCommand::Forget(name()));
+            }
+            if edit.clicked() {
+                filter(FilterCommand::Load(name()));
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.add(Label::new(&kept.name).truncate()).on_hover_text(&kept.text);
+            });
+        });
+    });
+}

@@ -1,0 +1,163 @@
+//! Which paths are shown: presets, the text, its tree, spheres, kept filters, and what was found.
+
+pub(super) mod complete;
+pub(crate) mod found;
+mod kept;
+mod text;
+
+use common::SelectorKind;
+use egui::{Button, DragValue, Label, RichText, Ui};
+
+use super::widgets::{dot, toggle};
+use super::{Panel, builder};
+use crate::command::{Command, FilterCommand, kind_name};
+use crate::theme;
+use crate::world::World;
+
+pub(super) use text::vocabulary;
+
+/// Light path expressions that people ask for most.
+const PRESETS: [(&str, &str, &str); 5] = [
+    ("All", "", "Every path"),
+    ("Direct", "lpe \"CDL\"", "Direct light on something diffuse"),
+    ("Indirect", "lpe \"CD{2,}L\"", "Light that went from one diffuse surface to another"),
+    ("Caustics", "lpe \"C.*DS+L\"", "Light that mirrors or glass threw on something diffuse"),
+    ("SDS", "lpe \"CS+DS+L\"", "Caustics seen in a mirror or through glass"),
+];
+
+/// The filter.
+#[derive(Debug, Default)]
+pub(super) struct FilterPanel {
+    draft: text::Draft,
+    kept: kept::Kept,
+}
+
+impl Panel for FilterPanel {
+    fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+        let mut filter = |command| commands.push(Command::Filter(command));
+        presets(ui, world, &mut filter);
+        self.draft.ui(ui, world, &mut filter);
+        if is_likely_mistaken(&world.settings.filter.text) {
+            let text = "`RD` is two vertices, a reflection and then something diffuse; `<RD>` is \
+                        one vertex that is both.";
+            ui.add(Label::new(RichText::new(text).small().weak()).wrap());
+        }
+        builder::ui(ui, world, &mut filter);
+        selectors(ui, world, &mut filter);
+        self.kept.ui(ui, world, &mut filter);
+        switches(ui, world, &mut filter);
+        found::show(ui, world, commands);
+    }
+}
+
+fn presets(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterCommand)) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        for (name, text, meaning) in PRESETS {
+            let chosen = world.settings.filter.text == text;
+            let tip =
+                if text.is_empty() { meaning.to_owned() } else { format!("{meaning}: {text}") };
+            if ui.add(Button::selectable(chosen, name)).on_hover_text(tip).clicked() {
+                filter(FilterCommand::text(text.to_owned()));
+            }
+        }
+    });
+}
+
+/// True where an expression asks for a way of going on and a kind of scattering as two vertices, which
+/// people write who mean one.
+fn is_likely_mistaken(text: &str) -> bool {
+    let expressions = text.split('"').skip(1).step_by(2);
+    expressions.into_iter().any(|expression| {
+        let (mut bracketed, mut quoted) = (false, false);
+        let mut before = ' ';
+        expression.chars().any(|c| {
+            let mistaken = matches!(before, 'R' | 'T' | 'V') && matches!(c, 'D' | 'G' | 'S' | 's');
+            let counts = !bracketed && !quoted;
+            match c {
+                '\'' => quoted = !quoted,
+                '<' | '[' => bracketed = true,
+                '>' | ']' => bracketed = false,
+                _ => {}
+            }
+            before = c;
+            counts && mistaken
+        })
+    })
+}
+
+fn switches(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterCommand)) {
+    let settings = &world.settings.filter;
+    ui.horizontal_wrapped(|ui| {
+        let tip = "Without it, all paths are shown";
+        if let Some(switch) = toggle(ui, "On", tip, !settings.off) {
+            filter(FilterCommand::Enable(switch));
+        }
+        let tip = "Show what text and spheres would leave out";
+        if let Some(switch) = toggle(ui, "Invert", tip, settings.inverted) {
+            filter(FilterCommand::Invert(switch));
+        }
+        let clear = Button::new("Clear");
+        let tip = "Show all paths, and forget text and spheres";
+        let any = !settings.wanted().is_empty() || settings.off;
+        if ui.add_enabled(any, clear).on_hover_text(tip).clicked() {
+            filter(FilterCommand::Clear);
+        }
+        if ui.button("Copy").on_hover_text("Copy the whole filter as text").clicked() {
+            ui.ctx().copy_text(settings.wanted());
+        }
+    });
+}
+
+/// The spheres, one a line.
+fn selectors(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterCommand)) {
+    let settings = &world.settings.filter;
+    if settings.selectors.is_empty() {
+        let [start, end, any, all] =
+            world.settings.layout.keys.selectors().map(|(key, _)| key.name());
+        let text = format!(
+            "Point at a surface and press {start} for a sphere in which paths start, {end} for one \
+             in which they end, {any} for any and {all} for all through which they pass.",
+        );
+        ui.add(Label::new(RichText::new(text).small().weak()).wrap());
+        return;
+    }
+    for (number, sphere) in settings.selectors.iter().enumerate() {
+        let number32 = number as u32;
+        ui.horizontal(|ui| {
+            dot(ui, theme::selector_color(sphere.kind));
+            let chosen = settings.chosen == Some(number);
+            let name = format!("{} {}", kind_name(sphere.kind), number + 1);
+            let button = Button::selectable(chosen, name);
+            if ui.add(button).on_hover_text(meaning(sphere.kind)).clicked() {
+                filter(FilterCommand::Choose(number32));
+            }
+            let [x, y, z, mut radius] = sphere.place;
+            let speed = radius * 0.01;
+            let drag = DragValue::new(&mut radius)
+                .speed(speed)
+                .range(f64::MIN_POSITIVE..=1e12)
+                .max_decimals(4)
+                .prefix("r ");
+            if ui.add(drag).on_hover_text("Radius, in the units of the scene file").changed() {
+                filter(FilterCommand::Move(number32, [x, y, z, radius]));
+            }
+            if ui.button("Delete").on_hover_text("Remove this sphere").clicked() {
+                filter(FilterCommand::Delete(number32));
+            }
+        });
+    }
+}
+
+/// What a kind of selectors asks of paths.
+pub(super) fn meaning(kind: SelectorKind) -> &'static str {
+    match kind {
+        SelectorKind::Start => "Paths that start, at the light, in any of these",
+        SelectorKind::End => "Paths that end, at the camera, in any of these",
+        SelectorKind::Any => "Paths with a vertex in any of these",
+        SelectorKind::All => "Paths with a vertex in each of these",
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,202 @@
+//! The filter panel under a user's hand, without a window.
+
+use common::{
+    ChainId, ExplorerCommand, Filter, FilterCounts, FilterReply, NearestMiss, Order, PathId, Seed,
+    Shortfall, Statistics,
+};
+use egui::Key;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use super::*;
+use crate::command::{Sphere, Switch};
+use crate::model::Model;
+use crate::panel::tests::{Stage, shows};
+use crate::synthetic::{mesh, welcome};
+
+/// The panel before a scene with names.
+fn stage() -> Stage {
+    let mut stage = Stage::new(FilterPanel::default());
+    stage.status.welcome(welcome());
+    stage.model = Model::new(mesh());
+    stage
+}
+
+/// Does what the panel asked for, as the viewer does; answers it.
+fn obey(harness: &mut Harness<'_, Stage>) -> Vec<Command> {
+    harness.run_steps(3);
+    let said = std::mem::take(&mut harness.state_mut().said);
+    for command in &said {
+        if let Command::Filter(command) = command {
+            harness.state_mut().settings.filter.apply(command);
+        }
+    }
+    harness.run_steps(3);
+    said
+}
+
+fn click(harness: &mut Harness<'_, Stage>, label: &str) -> Vec<Command> {
+    harness.get_by_label(label).click();
+    obey(harness)
+}
+
+/// A filter of a sphere and a text, which no path passes.
+fn fruitless() -> Stage {
+    let mut stage = stage();
+    let sphere = Sphere { kind: SelectorKind::Any, place: [0.0, 1.0, 0.0, 0.5] };
+    stage.settings.filter.apply(&FilterCommand::Add(sphere));
+    stage.settings.filter.apply(&FilterCommand::Set("edges >= 4 and dwell > 2".to_owned()));
+    let path = PathId { chain: ChainId(3), epoch: 0, step: 77 };
+    let failed =
+        vec![Shortfall { condition: 0, by: Some(0.25) }, Shortfall { condition: 1, by: Some(2.0) }];
+    let nearest = Some(NearestMiss { path, asked: 3, failed });
+    let conditions = vec![0, 250, 900];
+    let counts = FilterCounts { seen: 1000, conditions, nearest, ..Default::default() };
+    stage.status.statistics(Statistics { filter: counts, ..Statistics::default() });
+    let conditions = ["any in sphere(0, 1, 0, 0.5)", "edges >= 4", "dwell > 2"];
+    let conditions = conditions.map(str::to_owned).to_vec();
+    stage.status.filter = Some(FilterReply { conditions, ..FilterReply::default() });
+    stage
+}
+
+#[test]
+fn an_empty_result_explains_the_nearest_miss_and_offers_what_to_do() {
+    let mut harness = fruitless().harness();
+    harness.run_steps(3);
+    for text in [
+        "0 matching of 1.00 k seen",
+        "No path matches",
+        "1 of 3 conditions hold for the nearest path; fails sphere 1 by 0.25, and fails `edges >= 4` by 2",
+        "25.0 %",
+    ] {
+        assert!(shows(&harness, text), "`{text}` is missing");
+    }
+    let sphere = |radius: f64| Command::Filter(FilterCommand::Move(0, [0.0, 1.0, 0.0, radius]));
+    assert_eq!(click(&mut harness, "Widen sphere 1"), [sphere(0.765)], "0.75, and a little more");
+    let text = |text: &str| Command::Filter(FilterCommand::Set(text.to_owned()));
+    let loosened = text("edges >= 2 and dwell > 2");
+    assert_eq!(click(&mut harness, "Loosen the bound"), [loosened], "as the nearest has");
+    assert_eq!(click(&mut harness, "Drop this condition"), [text("dwell > 2")], "without it");
+    let id = PathId { chain: ChainId(3), epoch: 0, step: 77 };
+    let seed = Command::Order(Order::Explorer(ExplorerCommand::Seed(Seed::Path(id))));
+    assert_eq!(click(&mut harness, "Explore from the nearest path"), [seed], "by its name");
+    let off = Command::Filter(FilterCommand::Enable(Switch::Off));
+    assert_eq!(click(&mut harness, "Show all paths"), [off], "the way out");
+    let invert = Command::Filter(FilterCommand::Invert(Switch::On));
+    harness.get_all_by_label("Invert").last().expect("a button").click();
+    assert_eq!(obey(&mut harness), [invert], "the others");
+    let delete = Command::Filter(FilterCommand::Delete(0));
+    assert_eq!(click(&mut harness, "Delete sphere 1"), [delete], "without the sphere");
+}
+
+#[test]
+fn what_is_wanted_follows_every_switch() {
+    let mut filter = crate::settings::FilterSettings::default();
+    assert_eq!(filter.wanted(), "", "all paths");
+    filter.apply(&FilterCommand::Invert(Switch::On));
+    assert_eq!(filter.wanted(), "", "there is nothing to invert");
+    filter.apply(&FilterCommand::Set("edges == 2".to_owned()));
+    assert_eq!(filter.wanted(), "not edges == 2");
+    filter.apply(&FilterCommand::Keep("longer".to_owned()));
+    filter.apply(&FilterCommand::Clear);
+    assert_eq!(filter.wanted(), "", "what is kept does not hold by itself");
+    filter.apply(&FilterCommand::Use("longer".to_owned(), Switch::On));
+    assert_eq!(filter.wanted(), "not edges == 2", "now it does");
+    filter.apply(&FilterCommand::Set("dwell > 3".to_owned()));
+    filter.apply(&FilterCommand::Reverse("longer".to_owned(), Switch::Toggle));
+    assert_eq!(filter.wanted(), "dwell > 3 and edges == 2", "beside the text, turned round");
+    filter.apply(&FilterCommand::Enable(Switch::Off));
+    assert_eq!(filter.wanted(), "", "switched off");
+    filter.apply(&FilterCommand::Load("longer".to_owned()));
+    assert_eq!((filter.text.as_str(), filter.wanted().as_str()), ("edges == 2", "edges == 2"));
+    for (name, text, _) in PRESETS {
+        assert!(Filter::parse(text).is_ok(), "{name}");
+    }
+}
+
+/// Writes into the text of the filter.
+fn write(harness: &mut Harness<'_, Stage>, text: &str) {
+    harness.get_by_label("Text of the filter").focus();
+    harness.run_steps(2);
+    harness.get_by_label("Text of the filter").type_text(text);
+    harness.run_steps(3);
+}
+
+fn press(harness: &mut Harness<'_, Stage>, key: Key) -> Vec<Command> {
+    harness.key_press(key);
+    obey(harness)
+}
+
+#[test]
+fn words_and_names_are_completed_by_tab() {
+    let mut harness = stage().harness();
+    harness.run_steps(3);
+    write(&mut harness, "any on ma");
+    assert!(shows(&harness, "material"), "a word of the grammar");
+    press(&mut harness, Key::Tab);
+    assert!(shows(&harness, "\"lamp\""), "a name of the scene");
+    press(&mut harness, Key::ArrowDown);
+    press(&mut harness, Key::Tab);
+    assert_eq!(press(&mut harness, Key::Escape), [], "what is offered next is sent away");
+    let set = FilterCommand::Set("any on material \"lamp\"".to_owned());
+    // It is asked for in every frame until it is done.
+    let said = press(&mut harness, Key::Enter);
+    assert_eq!(said.first(), Some(&Command::Filter(set)), "Enter sets it");
+}
+
+#[test]
+fn a_mistake_is_told_with_its_place_and_changes_nothing() {
+    let mut harness = stage().harness();
+    harness.run_steps(3);
+    write(&mut harness, "edges >= 3 and any in spere(0, 0, 0, 1)");
+    assert!(shows(&harness, "Character 23"), "where");
+    assert!(shows(&harness, "found `spere`"), "what");
+    assert_eq!(press(&mut harness, Key::Enter), [], "no filter");
+    press(&mut harness, Key::Escape);
+    assert!(shows(&harness, "Character"), "first what is offered goes");
+    press(&mut harness, Key::Escape);
+    assert!(!shows(&harness, "Character"), "taken back");
+}
+
+#[test]
+fn two_vertices_that_were_meant_to_be_one_are_pointed_out() {
+    for (text, mistaken) in [
+        ("lpe \"CRDL\"", true),
+        ("lpe \"C<RD>L\"", false),
+        ("lpe \"C<TS'TDX'>.*L\"", false),
+        ("lpe \"CDS+L\" and any on material \"TD\"", true),
+        ("edges == 2", false),
+    ] {
+        assert_eq!(is_likely_mistaken(text), mistaken, "{text}");
+    }
+    let mut stage = stage();
+    stage.settings.filter.text = "lpe \"CRDL\"".to_owned();
+    let mut harness = stage.harness();
+    harness.run_steps(3);
+    assert!(shows(&harness, "`<RD>` is one vertex"), "a hint");
+}
+
+#[test]
+fn filters_are_kept_used_turned_written_and_forgotten() {
+    let mut stage = stage();
+    stage.settings.filter.apply(&FilterCommand::Set("edges >= 4".to_owned()));
+    let mut harness = stage.harness();
+    harness.run_steps(3);
+    harness.get_by_label("Name of the filter").focus();
+    harness.run_steps(2);
+    harness.get_by_label("Name of the filter").type_text("long  ones");
+    harness.run_steps(2);
+    let command = |command| [Command::Filter(command)];
+    let name = || "long ones".to_owned();
+    assert_eq!(click(&mut harness, "Keep"), command(FilterCommand::Keep(name())));
+    assert!(shows(&harness, "long ones"), "it is listed");
+    let switch = harness.get_all_by_role(egui::accesskit::Role::CheckBox).next();
+    switch.expect("its switch").click();
+    assert_eq!(obey(&mut harness), command(FilterCommand::Use(name(), Switch::On)));
+    harness.get_all_by_label("not").last().expect("its not").click();
+    assert_eq!(obey(&mut harness), command(FilterCommand::Reverse(name(), Switch::Toggle)));
+    assert_eq!(click(&mut harness, "Edit"), command(FilterCommand::Load(name())));
+    assert_eq!(harness.state().settings.filter.wanted(), "not edges >= 4", "turned round");
+    harness.get_all_by_label("×").last().expect("its cross").click();
+    assert_eq!(obey(&mut harness), command(FilterCommand::Forget(name())));
+}
