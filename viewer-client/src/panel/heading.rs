@@ -76,7 +76,7 @@ fn menu(
 
 /// The arrow and the name: a click folds, a drag moves.
 fn title(ui: &mut Ui, name: PanelName, folded: bool) -> Response {
-    let (_, arrow) = ui.allocate_exact_size(vec2(14.0, 18.0), Sense::hover());
+    let (_, arrow) = ui.allocate_exact_size(vec2(11.0, 11.0), Sense::hover());
     paint_default_icon(ui, if folded { 0.0 } else { 1.0 }, &arrow);
     let text = RichText::new(name.title()).strong().size(14.0);
     let title = ui.add(Label::new(text).selectable(false).sense(Sense::click_and_drag()));

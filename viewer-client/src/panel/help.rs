@@ -100,7 +100,7 @@ fn keys(preset: KeyPreset, group: Group) -> Vec<(String, &'static str)> {
 }
 
 fn section(ui: &mut Ui, title: &str, lines: impl IntoIterator<Item = (String, &'static str)>) {
-    ui.label(RichText::new(title).strong().color(theme::ACCENT));
+    ui.label(RichText::new(title).strong().color(theme::accent(ui.visuals().dark_mode)));
     Grid::new(title).num_columns(2).spacing([14.0, 4.0]).show(ui, |ui| {
         for (key, help) in lines {
             ui.label(RichText::new(key).monospace().strong());

@@ -40,7 +40,9 @@ fn card(ui: &mut Ui, commands: &mut Vec<Command>) {
         ui.add_space(4.0);
         Grid::new("first steps").num_columns(2).spacing([14.0, 4.0]).show(ui, |ui| {
             for (action, effect) in STEPS {
-                ui.label(RichText::new(action).strong().color(theme::ACCENT));
+                ui.label(
+                    RichText::new(action).strong().color(theme::accent(ui.visuals().dark_mode)),
+                );
                 ui.add(Label::new(effect).wrap());
                 ui.end_row();
             }

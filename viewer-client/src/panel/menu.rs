@@ -19,7 +19,10 @@ pub(super) struct Menu {
 impl Panel for Menu {
     fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
         MenuBar::new().ui(ui, |ui| {
-            let name = RichText::new("Lvis").strong().size(16.0).color(theme::ACCENT);
+            let name = RichText::new("Lvis")
+                .strong()
+                .size(16.0)
+                .color(theme::accent(ui.visuals().dark_mode));
             ui.add(Label::new(name).selectable(false));
             ui.add_space(8.0);
             let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);

@@ -117,6 +117,9 @@ pub fn show(panels: &mut [Placed], ui: &mut Ui, world: &World<'_>, commands: &mu
     }
 }
 
+/// Height of the room below the last section, in points.
+const FOOT: f32 = 40.0;
+
 /// One side of the window, where it has anything to show. Its width is the user's.
 fn one_side(
     ui: &mut Ui,
@@ -173,8 +176,9 @@ fn sections(
             heading::receive(ui, &shown.response, name, commands);
             copy_by_key(ui, &shown.response, name, commands);
         }
-        let rest = ui.available_size_before_wrap().max(egui::vec2(1.0, 24.0));
-        let (_, rest) = ui.allocate_exact_size(rest, Sense::hover());
+        // What is dropped below the last one goes to the foot of the side.
+        let foot = egui::vec2(ui.available_width(), FOOT);
+        let (_, rest) = ui.allocate_exact_size(foot, Sense::hover());
         if let Some(dragged) = rest.dnd_release_payload::<PanelName>() {
             let place = match side {
                 WindowSide::Left => Move::Left,

@@ -128,8 +128,8 @@ fn figures(ui: &mut Ui, world: &World<'_>) {
     let mutations = current.map_or(0.0, |s| s.mutations_per_second);
     if let Some(latency) = world.status.latency.filter(|_| world.status.is_connected()) {
         let milliseconds = 1e3 * latency.as_secs_f32();
-        let value = format::value(milliseconds);
-        figure(ui, "ms", &value, "Latency: how long the daemon took to answer, way and back");
+        let value = format!("{} ms", format::value(milliseconds));
+        figure(ui, "latency", &value, "How long the daemon took to answer, way and back");
     }
     figure(ui, "mutations/s", &format::count(mutations), "Steps of all chains a second");
 }

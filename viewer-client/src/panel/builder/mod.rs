@@ -27,10 +27,14 @@ impl Context {
         let names = world.names();
         let middle = 0.5 * (bounds.min + bounds.max);
         let scale = names.frame.map_or(1.0, |frame| frame.scale);
+        let radius = f64::from(bounds.radius()) * 0.1 / scale;
+        // Two digits of the radius: a text that people read.
+        let grain = 10.0_f64.powf(radius.log10().floor() - 1.0);
+        let neat = |x: f64| if grain > 0.0 { (x / grain).round() / (1.0 / grain) } else { x };
         Self {
             names: vocabulary(world),
-            centre: names.world(middle.into()).to_array(),
-            radius: f64::from(bounds.radius()) * 0.1 / scale,
+            centre: names.world(middle.into()).to_array().map(neat),
+            radius: neat(radius),
         }
     }
 }

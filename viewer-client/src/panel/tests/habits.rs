@@ -2,10 +2,12 @@
 
 use common::{Attendee, Author, ChainState, Notice, Presence, Role};
 use egui::accesskit::Role as WidgetRole;
+use egui::{Modifiers, PointerButton};
 
 use super::*;
 use crate::command::{DeskCommand, FilterCommand, LayoutCommand, Move, Source, Switch};
-use crate::panel::{copied, heading, image, status};
+use crate::keys::MousePreset;
+use crate::panel::{copied, heading, image, status, viewport};
 use crate::status::LinkState;
 use crate::synthetic::{batch, welcome};
 
@@ -148,4 +150,50 @@ fn channels_and_visible_differences_are_asked_for() {
     harness.run_steps(3);
     assert!(shows(&harness, "0.2500"), "the mean");
     assert!(shows(&harness, "FLIP: the difference that a person sees"), "a legend");
+}
+
+/// What a drag with a button and modifiers does to the camera.
+fn dragged(mouse: MousePreset, button: PointerButton, modifiers: Modifiers) -> Vec<String> {
+    let mut stage = Stage::new(viewport::Viewport);
+    stage.settings.layout.mouse = mouse;
+    let mut harness = stage.harness();
+    harness.run_steps(2);
+    let view = harness.get_by_role_and_label(WidgetRole::Canvas, "Viewport").rect();
+    let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers };
+    let (from, to) = (view.center(), view.center() + egui::vec2(60.0, 40.0));
+    let held = Event::ModifiersChanged(modifiers);
+    for event in [held, Event::PointerMoved(from), press(from, true), Event::PointerMoved(to)] {
+        harness.event(event);
+        harness.step();
+    }
+    harness.event(press(to, false));
+    harness.run_steps(2);
+    let said = harness.state().said.iter().map(ToString::to_string);
+    let words = said.map(|text| text.split(' ').take(2).collect::<Vec<_>>().join(" "));
+    let mut verbs: Vec<String> = words.filter(|words| words.starts_with("camera")).collect();
+    verbs.dedup();
+    verbs
+}
+
+#[test]
+fn dragging_does_what_other_programs_made_a_habit() {
+    use PointerButton::{Middle, Primary, Secondary};
+    let (plain, alt) = (Modifiers::NONE, Modifiers::ALT);
+    let (shift, ctrl) = (Modifiers::SHIFT, Modifiers::CTRL | Modifiers::COMMAND);
+    for (mouse, button, modifiers, expected) in [
+        (MousePreset::Rerun, Primary, plain, "camera orbit"),
+        (MousePreset::Rerun, Secondary, plain, "camera pan"),
+        (MousePreset::Rerun, Primary, shift, "camera pan"),
+        (MousePreset::Blender, Primary, plain, ""),
+        (MousePreset::Blender, Middle, plain, "camera orbit"),
+        (MousePreset::Blender, Middle, shift, "camera pan"),
+        (MousePreset::Blender, Middle, ctrl, "camera zoom"),
+        (MousePreset::Maya, Primary, plain, ""),
+        (MousePreset::Maya, Primary, alt, "camera orbit"),
+        (MousePreset::Maya, Middle, alt, "camera pan"),
+        (MousePreset::Maya, Secondary, alt, "camera zoom"),
+    ] {
+        let verbs = dragged(mouse, button, modifiers);
+        assert_eq!(verbs.join(" "), expected, "{mouse} {button:?} {modifiers:?}");
+    }
 }

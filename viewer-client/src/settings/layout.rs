@@ -1,0 +1,185 @@
+//! What the window holds, and where.
+
+use crate::command::{LayoutCommand, Move, PanelName, ThemeName, WindowSide};
+use crate::keys::{KeyPreset, MousePreset};
+
+/// What the window holds.
+#[expect(clippy::struct_excessive_bools, reason = "switches of one window")]
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// Which panels are open, in the order of [`PanelName::ALL`].
+    pub open: [bool; PanelName::ALL.len()],
+    /// Which of them are nothing but their heading.
+    pub folded: [bool; PanelName::ALL.len()],
+    /// All panels from the top of the left side on; where the left side ends, see [`Self::left`].
+    pub order: [PanelName; PanelName::ALL.len()],
+    /// Which of them are on the left side.
+    pub left: [bool; PanelName::ALL.len()],
+    /// Widths of the left and of the right side in points, within [`WIDTHS`].
+    pub widths: [u16; 2],
+    /// What dragging with the mouse does to the camera.
+    pub mouse: MousePreset,
+    /// Light on dark.
+    pub dark: bool,
+    /// The sheet of keys is open.
+    pub help: bool,
+    /// Which keys there are.
+    pub keys: KeyPreset,
+    /// Others see where this viewer looks, and its filter.
+    pub seen: bool,
+    /// The palette of commands is open.
+    pub palette: bool,
+    /// The first steps are shown.
+    pub hint: bool,
+    /// Size of texts and buttons in percent, within [`SCALES`].
+    pub scale: u16,
+}
+
+/// Sizes of the interface in percent.
+pub const SCALES: std::ops::RangeInclusive<u16> = 50..=300;
+/// Widths of a side in points.
+pub const WIDTHS: std::ops::RangeInclusive<u16> = 200..=900;
+/// Usual widths of the sides.
+const USUAL_WIDTHS: [u16; 2] = [260, 352];
+
+impl Default for Layout {
+    fn default() -> Self {
+        let open = [true; PanelName::ALL.len()];
+        Self {
+            open,
+            folded: [false; PanelName::ALL.len()],
+            order: PanelName::ALL,
+            left: PanelName::ALL.map(PanelName::is_usually_left),
+            widths: USUAL_WIDTHS,
+            mouse: MousePreset::Rerun,
+            dark: true,
+            help: false,
+            keys: KeyPreset::Today,
+            seen: false,
+            palette: false,
+            hint: false,
+            scale: 100,
+        }
+    }
+}
+
+impl Layout {
+    /// True when the panel is open.
+    pub fn is_open(&self, panel: PanelName) -> bool {
+        self.open[panel as usize]
+    }
+
+    /// True when nothing of the panel is shown but its heading.
+    pub fn is_folded(&self, panel: PanelName) -> bool {
+        self.folded[panel as usize]
+    }
+
+    /// True when the panel belongs to the left side.
+    pub fn is_left(&self, panel: PanelName) -> bool {
+        self.left[panel as usize]
+    }
+
+    /// The panels of a side from the top on, open or not.
+    pub fn side(&self, side: WindowSide) -> impl Iterator<Item = PanelName> + '_ {
+        let left = side == WindowSide::Left;
+        self.order.into_iter().filter(move |name| self.is_left(*name) == left)
+    }
+
+    /// The width of a side in points.
+    pub fn width(&self, side: WindowSide) -> u16 {
+        self.widths[side as usize]
+    }
+
+    /// Puts a panel elsewhere.
+    fn arrange(&mut self, name: PanelName, place: Move) {
+        let side = if self.is_left(name) { WindowSide::Left } else { WindowSide::Right };
+        let near: Vec<PanelName> = self.side(side).filter(|near| self.is_open(*near)).collect();
+        let at = near.iter().position(|near| *near == name);
+        let neighbour = |step: isize| near.get(at?.checked_add_signed(step)?).copied();
+        let before = match place {
+            Move::Left | Move::Right => {
+                self.left[name as usize] = place == Move::Left;
+                None
+            }
+            Move::Before(other) => {
+                self.left[name as usize] = self.is_left(other);
+                Some(other)
+            }
+            Move::Up => match neighbour(-1) {
+                Some(above) => Some(above),
+                None => return,
+            },
+            Move::Down if neighbour(1).is_none() => return,
+            Move::Down => neighbour(2),
+        };
+        if before == Some(name) {
+            return;
+        }
+        let mut order: Vec<PanelName> = self.order.into_iter().filter(|n| *n != name).collect();
+        let index = before.and_then(|before| order.iter().position(|n| *n == before));
+        order.insert(index.unwrap_or(order.len()), name);
+        if let Ok(order) = order.try_into() {
+            self.order = order;
+        }
+    }
+
+    /// Follows a command.
+    pub fn apply(&mut self, command: LayoutCommand) {
+        match command {
+            LayoutCommand::Fold(name, switch) => switch.apply(&mut self.folded[name as usize]),
+            LayoutCommand::Arrange(name, place) => self.arrange(name, place),
+            LayoutCommand::Width(side, points) => self.widths[side as usize] = points,
+            LayoutCommand::Usual => {
+                let Self { order, left, widths, folded, .. } = Self::default();
+                (self.order, self.left) = (order, left);
+                (self.widths, self.folded) = (widths, folded);
+            }
+            LayoutCommand::Mouse(preset) => self.mouse = preset,
+            LayoutCommand::Panel(name, switch) => switch.apply(&mut self.open[name as usize]),
+            LayoutCommand::Theme(ThemeName::Dark) => self.dark = true,
+            LayoutCommand::Theme(ThemeName::Light) => self.dark = false,
+            LayoutCommand::Theme(ThemeName::Toggle) => self.dark = !self.dark,
+            LayoutCommand::Help(switch) => switch.apply(&mut self.help),
+            LayoutCommand::Keys(preset) => self.keys = preset,
+            LayoutCommand::Seen(switch) => switch.apply(&mut self.seen),
+            LayoutCommand::Palette(switch) => switch.apply(&mut self.palette),
+            LayoutCommand::Hint(switch) => switch.apply(&mut self.hint),
+            LayoutCommand::Scale(percent) => self.scale = percent,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn panels_are_put_elsewhere_and_back() {
+        let mut layout = Layout::default();
+        let side = |layout: &Layout, side| layout.side(side).collect::<Vec<_>>();
+        use PanelName::{Cloud, Filter, Image, Path, Scene, Statistics};
+        use WindowSide::{Left, Right};
+        let usual = layout.clone();
+        let mut run = |command: &str| {
+            let command = command.parse().expect(command);
+            if let crate::command::Command::Layout(command) = command {
+                layout.apply(command);
+            }
+            layout.clone()
+        };
+        assert_eq!(side(&run("arrange scene up"), Left), [Cloud, Scene, Filter], "up");
+        assert_eq!(run("arrange cloud up"), run("arrange cloud up"), "it is the first");
+        assert_eq!(side(&run("arrange cloud down"), Left), [Scene, Cloud, Filter], "down");
+        assert_eq!(run("arrange filter down").order, run("arrange filter down").order, "the last");
+        let moved = run("arrange statistics before cloud");
+        assert_eq!(side(&moved, Left), [Scene, Statistics, Cloud, Filter], "to the other side");
+        assert_eq!(side(&moved, Right)[..2], [Image, Path], "the others stay");
+        // What is closed is passed over.
+        run("panel statistics off");
+        assert_eq!(side(&run("arrange scene down"), Left)[..3], [Statistics, Cloud, Scene], "down");
+        run("panel statistics on");
+        run("width right 500");
+        assert!(run("fold image on").is_folded(Image), "folded");
+        assert_eq!(run("usual"), usual, "as it was");
+    }
+}
