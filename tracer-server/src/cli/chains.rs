@@ -16,10 +16,10 @@ pub struct ChainArgs {
     /// Number of the run: the same seed gives the same result.
     #[arg(long, default_value_t = EnsembleSettings::default().seed)]
     pub seed: u64,
-    /// Number of Markov chains.
-    #[arg(long, value_name = "N", default_value_t = EnsembleSettings::default().chains)]
+    /// Number of Markov chains [default: 512 for a picture, 128 to be watched].
+    #[arg(long, value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=65_536))]
-    pub chains: u32,
+    pub chains: Option<u32>,
     /// Worker threads; as many as there are cores without.
     #[arg(long, value_name = "N")]
     #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
@@ -52,6 +52,10 @@ pub struct StrategyArgs {
 }
 
 const HEADING: &str = "Mutation strategies";
+
+/// Chains of a picture that nobody watches. A chain that stays on one path leaves its whole share of
+/// the steps in one pixel: the more chains, the smaller that share.
+const CHAINS_OF_A_PICTURE: u32 = 512;
 
 /// On or off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -174,6 +178,16 @@ pub fn of_scene(settings: &[StrategySetting]) -> anyhow::Result<StrategyOptions>
 }
 
 impl ChainArgs {
+    /// The settings of chains whose only end is a picture: they may be many, and each short.
+    pub fn for_a_picture(
+        &self,
+        scene: &Scene,
+        settings: &[StrategySetting],
+    ) -> anyhow::Result<EnsembleSettings> {
+        let ensemble = self.ensemble(scene, settings)?;
+        Ok(EnsembleSettings { chains: self.chains.unwrap_or(CHAINS_OF_A_PICTURE), ..ensemble })
+    }
+
     /// The settings of the chains on `scene`, of whose file `settings` are the wishes.
     pub fn ensemble(
         &self,
@@ -190,7 +204,7 @@ impl ChainArgs {
         let defaults = EnsembleSettings::default();
         Ok(EnsembleSettings {
             seed: self.seed,
-            chains: self.chains,
+            chains: self.chains.unwrap_or(defaults.chains),
             threads: self.threads.unwrap_or(defaults.threads),
             strategies,
             ..defaults
@@ -243,6 +257,19 @@ mod tests {
         assert!(options("--adapt on", &file).expect("options").adapts(), "said in so many words");
         assert!(options("--without lens", &[]).expect("options").adapts(), "no weight was given");
         assert!(!options("--adapt off", &[]).expect("options").adapts(), "switched off");
+    }
+
+    #[test]
+    fn a_picture_has_more_chains_than_what_is_watched() {
+        let scene = crate::scene::fixtures::diffuse_room().build();
+        for (line, expected) in [("", [512, 128]), ("--chains 7", [7, 7])] {
+            let line = format!("tracer-server serve cornell {line}");
+            let cli = Cli::try_parse_from(line.split_whitespace()).expect("valid arguments");
+            let Command::Serve(args) = cli.command else { panic!("no serve") };
+            let picture = args.chains.for_a_picture(&scene, &[]).expect("settings").chains;
+            let watched = args.chains.ensemble(&scene, &[]).expect("settings").chains;
+            assert_eq!([picture, watched], expected, "{line}");
+        }
     }
 
     #[test]

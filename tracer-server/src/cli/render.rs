@@ -164,7 +164,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<ExitCode> {
             (Some(time), _) => Budget::Time(time),
             (None, mutations) => Budget::PerPixel(mutations.unwrap_or(DEFAULT_PER_PIXEL)),
         },
-        ensemble: args.chains.ensemble(&scene, &wishes)?,
+        ensemble: args.chains.for_a_picture(&scene, &wishes)?,
         primary: args.primary.settings(args.integrator)?,
     };
     let what = format!("{}, {}", scene.name(), settings.integrator.name());

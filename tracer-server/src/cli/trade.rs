@@ -166,7 +166,7 @@ impl TradeArgs {
         let mut settings: Vec<Setting> = Vec::new();
         for SettingText { name, options } in texts {
             ensure!(!settings.iter().any(|s| s.name == *name), "two settings are called `{name}`");
-            let ensemble = options.chains.ensemble(scene, wishes);
+            let ensemble = options.chains.for_a_picture(scene, wishes);
             let ensemble = ensemble.with_context(|| format!("--setting {name}"))?;
             let primary = options.primary.settings(options.integrator);
             let render = RenderSettings {

@@ -12,5 +12,6 @@ pub use sum::Accumulator;
 pub use torus::TorusStep;
 pub use warp::{
     below_one, cosine_hemisphere, invert_cosine_hemisphere, invert_uniform_sphere,
-    invert_uniform_triangle, log_uniform, pick, turn, uniform_sphere, uniform_triangle,
+    invert_uniform_triangle, log_uniform, pick, power_of_half, turn, uniform_sphere,
+    uniform_triangle,
 };

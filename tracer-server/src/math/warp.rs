@@ -65,6 +65,13 @@ pub fn pick<T>(mut u: f64, items: impl IntoIterator<Item = (T, f64)>) -> Option<
     chosen
 }
 
+/// `2^-n`, exactly; zero where that is smaller than any normal number.
+#[inline]
+pub fn power_of_half(n: usize) -> f64 {
+    // The exponent field alone: a library call costs more than all the sums it is used in.
+    f64::from_bits(1023_u64.saturating_sub(n as u64) << 52)
+}
+
 /// The angle from the x axis to the point (`x`, `y`) as a share of a full turn, in [0, 1).
 #[inline]
 pub fn turn(y: f64, x: f64) -> f64 {
@@ -82,6 +89,16 @@ pub fn below_one(u: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::math::{Rng, Stream};
+
+    #[test]
+    fn powers_of_half_are_exact() {
+        let mut expected = 1.0;
+        for n in 0..1023 {
+            assert_eq!(power_of_half(n), expected, "2^-{n}");
+            expected *= 0.5;
+        }
+        assert_eq!(power_of_half(5000), 0.0, "beyond the normal numbers");
+    }
 
     #[test]
     fn inverses_give_the_numbers_back() {

@@ -2,7 +2,7 @@
 //! [Veach and Guibas 1997, section 5.1].
 
 use super::{MixtureBasis, Mutation, Tuning};
-use crate::math::{Rng, pick};
+use crate::math::{Rng, pick, power_of_half};
 use crate::path::{Draft, Failure, Path, Range, resample};
 use crate::scene::Tracer;
 
@@ -46,7 +46,7 @@ fn deletion_weight(edges: usize) -> f64 {
     match edges {
         1 => 0.25,
         2 => 0.5,
-        _ => (-(edges as f64)).exp2(),
+        _ => power_of_half(edges),
     }
 }
 
@@ -56,7 +56,7 @@ fn addition_weight(difference: usize) -> f64 {
     match difference {
         0 => 0.5,
         1 => 0.15,
-        _ => 0.2 * (-(difference as f64)).exp2(),
+        _ => 0.2 * power_of_half(difference),
     }
 }
 

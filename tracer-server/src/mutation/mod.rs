@@ -16,6 +16,8 @@ mod retrace;
 mod tuning;
 
 #[cfg(test)]
+mod fuzz;
+#[cfg(test)]
 mod laws;
 #[cfg(test)]
 mod mutants;

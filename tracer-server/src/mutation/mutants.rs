@@ -242,7 +242,8 @@ pub(super) fn of_primary<'a>(right: Primary) -> Vec<Mutant<'a>> {
         spoil: impl Fn(&Path, &mut Tape),
     ) -> Result<Proposal, Failure> {
         let light = Primary::choose_split(x, rng);
-        let mut tape = Tape::of(scene, x, light, rng).ok_or(Failure::NoSubpath)?;
+        let mut tape = Tape::default();
+        tape.record(scene, x, light, rng).ok_or(Failure::NoSubpath)?;
         spoil(x, &mut tape);
         right.rebuild(scene, (x, light, &tape), rng, draft, y)?;
         let (forward, backward) = (1.0 / x.density_sum(), 1.0 / y.density_sum());
@@ -274,7 +275,8 @@ pub(super) fn of_primary<'a>(right: Primary) -> Vec<Mutant<'a>> {
             let splits = (0..=x.edge_count()).filter(|&light| x.reciprocal(light) > 0.0);
             let nth = rng.below(splits.clone().count());
             let light = splits.clone().nth(nth).ok_or(Failure::NoSubpath)?;
-            let tape = Tape::of(scene, x, light, rng).ok_or(Failure::NoSubpath)?;
+            let mut tape = Tape::default();
+            tape.record(scene, x, light, rng).ok_or(Failure::NoSubpath)?;
             right.rebuild(scene, (x, light, &tape), rng, draft, y)?;
             let (forward, backward) = (1.0 / x.density_sum(), 1.0 / y.density_sum());
             Ok(Proposal {

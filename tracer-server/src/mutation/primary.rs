@@ -117,7 +117,8 @@ impl Mutation for Primary {
         y: &mut Path,
     ) -> Result<usize, Failure> {
         let light = Self::choose_split(x, rng);
-        let tape = Tape::of(scene, x, light, rng).ok_or(Failure::NoSubpath)?;
+        let mut tape = Tape::default();
+        tape.record(scene, x, light, rng).ok_or(Failure::NoSubpath)?;
         self.rebuild(scene, (x, light, &tape), rng, draft, y)?;
         Ok(light)
     }

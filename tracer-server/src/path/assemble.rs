@@ -1,5 +1,6 @@
 //! From vertices to a path: splicing, and the computation of every cached value.
 
+use arrayvec::ArrayVec;
 use common::{Rgb, VertexKind};
 use glam::{DVec2, DVec3};
 
@@ -56,20 +57,21 @@ impl Path {
         self.edges.clear();
         self.scattering.clear();
 
-        self.vertices.extend(base.vertices[..splice.kept_light].iter().copied());
-        self.vertices.extend(splice.light.iter().copied());
-        self.vertices.extend(splice.eye.iter().rev().copied());
-        self.vertices.extend(base.vertices[splice.kept_from..].iter().copied());
+        append(&mut self.vertices, &base.vertices[..splice.kept_light])?;
+        append(&mut self.vertices, splice.light)?;
+        append(&mut self.vertices, splice.eye)?;
+        self.vertices[splice.kept_light + splice.light.len()..].reverse();
+        append(&mut self.vertices, &base.vertices[splice.kept_from..])?;
 
         self.place_infinite_light(scene);
 
         let first_new_edge = splice.kept_light.saturating_sub(1);
-        self.edges.extend(base.edges[..first_new_edge].iter().copied());
+        append(&mut self.edges, &base.edges[..first_new_edge])?;
         for j in first_new_edge..first_kept.min(self.vertices.len() - 1) {
             let edge = self.new_edge(scene, j)?;
             self.edges.push(edge);
         }
-        self.edges.extend(base.edges.iter().skip(splice.kept_from).copied());
+        append(&mut self.edges, base.edges.get(splice.kept_from..).unwrap_or_default())?;
         if splice.kept_from + 1 < base.vertices.len() {
             self.film = base.film;
             self.pixel = base.pixel;
@@ -77,13 +79,13 @@ impl Path {
             self.find_film_point(scene, splice.film)?;
         }
 
-        self.scattering.extend(base.scattering[..first_new_edge].iter().copied());
+        append(&mut self.scattering, &base.scattering[..first_new_edge])?;
         for j in first_new_edge..=first_kept.min(self.edges.len() - 1) {
             let scattering = self.new_scattering(scene, j)?;
             self.scattering.push(scattering);
         }
         let copied = (splice.kept_from + 1).min(base.scattering.len());
-        self.scattering.extend(base.scattering[copied..].iter().copied());
+        append(&mut self.scattering, &base.scattering[copied..])?;
         if self.scattering.len() < self.vertices.len() {
             self.scattering.push(NO_SCATTERING);
         }
@@ -228,6 +230,12 @@ impl Path {
             at_light = 1.0;
         }
     }
+}
+
+/// Copies `new` to the end of a list as one block.
+#[inline]
+fn append<T: Copy, const N: usize>(list: &mut ArrayVec<T, N>, new: &[T]) -> Result<(), Failure> {
+    list.try_extend_from_slice(new).map_err(|_full| Failure::LengthOutOfRange)
 }
 
 /// The unit direction from `a` to `b`, and what the end at `a` gives to the edge.

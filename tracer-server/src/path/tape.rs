@@ -15,15 +15,23 @@ pub struct Tape {
 }
 
 impl Tape {
-    /// Numbers from which two walks make `x` with `light` vertices on the light side.
+    /// Writes numbers from which two walks make `x` with `light` vertices on the light side.
     ///
     /// The inverse of the walks: where many numbers would do, as for the choice of an event or of a
-    /// light, `rng` draws one uniformly. `None` where the split cannot make the path.
-    pub fn of(scene: &Tracer<'_>, x: &Path, light: usize, rng: &mut Rng) -> Option<Self> {
-        let mut tape = Self::default();
-        tape.invert_light_walk(scene, x, light, rng)?;
-        tape.invert_eye_walk(scene, x, x.edge_count() - light, rng);
-        Some(tape)
+    /// light, `rng` draws one uniformly. `None` where the split cannot make the path. In place, since
+    /// a tape is too long to be handed around.
+    pub fn record(
+        &mut self,
+        scene: &Tracer<'_>,
+        x: &Path,
+        light: usize,
+        rng: &mut Rng,
+    ) -> Option<()> {
+        self.light.clear();
+        self.eye.clear();
+        self.invert_light_walk(scene, x, light, rng)?;
+        self.invert_eye_walk(scene, x, x.edge_count() - light, rng);
+        Some(())
     }
 
     fn invert_light_walk(

@@ -1,5 +1,7 @@
 //! From a description to a world that can be traced.
 
+use std::collections::BTreeSet;
+
 use common::{Camera, CameraError, FilterObject, Rgb, SceneFrame};
 use glam::DVec3;
 use thiserror::Error;
@@ -188,7 +190,8 @@ fn gather_triangles(
     let count = description.materials.len();
     let (mut triangles, mut materials) = (Vec::new(), Vec::new());
     let mut corners = Corners::default();
-    let mut degenerate = 0_usize;
+    let (mut degenerate, mut repeated) = (0_usize, 0_usize);
+    let mut lights = BTreeSet::new();
     for mesh in &description.meshes {
         let first = materials.len() as u32;
         let listed = mesh.triangles.iter().zip(&mesh.materials).enumerate();
@@ -200,7 +203,10 @@ fn gather_triangles(
             }
             // Rounded to single precision, so that the traversal sees the same triangle.
             let corner = |i: u32| frame.to_scene(mesh.positions[i as usize]).as_vec3().as_dvec3();
-            match Triangle::new(indices.map(corner)) {
+            let emits = !description.materials[usize::from(material)].emission.is_black();
+            let corner_points = indices.map(corner);
+            match Triangle::new(corner_points) {
+                Some(_) if emits && !lights.insert(place_of(corner_points)) => repeated += 1,
                 Some(triangle) => {
                     corners.push(mesh, index, &triangle, triangles.len());
                     triangles.push(triangle);
@@ -215,7 +221,22 @@ fn gather_triangles(
     if degenerate > 0 {
         warnings.push(format!("{degenerate} triangles without area were left out"));
     }
+    if repeated > 0 {
+        warnings.push(format!(
+            "{repeated} light triangles were left out: there is one in the same place already"
+        ));
+    }
     Ok((triangles, materials, corners))
+}
+
+/// What triangles have in common that cover each other and face the same way: the corners in their
+/// order, the least one first.
+fn place_of(corners: [DVec3; 3]) -> [[u64; 3]; 3] {
+    // Adding zero makes one zero of the two.
+    let mut bits = corners.map(|corner| (corner + 0.0).to_array().map(f64::to_bits));
+    let least = (0..3).min_by_key(|&i| bits[i]).unwrap_or(0);
+    bits.rotate_left(least);
+    bits
 }
 
 fn gather_balls(
