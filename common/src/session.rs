@@ -112,13 +112,28 @@ pub struct Statistics {
     pub paths_sent: u64,
     /// Paths dropped for this viewer since it came.
     pub paths_dropped: u64,
-    /// Bytes waiting in this viewer's data lane.
+    /// Bytes waiting for this viewer.
     pub queued_bytes: u64,
+    /// What waits between the chains and this viewer.
+    pub queues: Vec<Queue>,
     /// What this viewer's filter saw since it was set.
     pub filter: FilterCounts,
     /// How well the chains explore; absent until enough is known.
     #[serde(skip)]
     pub diagnostics: Option<Arc<Diagnostics>>,
+}
+
+/// A queue of the daemon.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Queue {
+    /// What waits in it, for people.
+    pub name: String,
+    /// Bytes that wait, about.
+    pub bytes: u64,
+    /// Most bytes that may wait; one piece that is larger than that still passes, alone.
+    pub limit: u64,
+    /// It is the viewer's own; others are shared by all.
+    pub own: bool,
 }
 
 /// The tracer's answer to a filter that a viewer set.

@@ -4,6 +4,7 @@
 
 use std::io::{Write as _, stdout};
 use std::sync::Arc;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
@@ -17,9 +18,10 @@ use tracer_server::scene::load::load;
 use viewer_client::connection::{Greeting, Peer, Session};
 
 /// Viewers, and how many of them never read.
-const CROWDS: [(usize, usize); 4] = [(0, 0), (1, 0), (4, 1), (15, 4)];
-/// Every crowd is measured this often, in turns, so that what else the machine does hits all alike.
-const ROUNDS: usize = 8;
+const CROWDS: [(usize, usize); 4] = [(0, 0), (1, 0), (4, 1), (16, 4)];
+/// Every crowd is measured this often, in turns, so that what else the machine does hits all alike,
+/// when `LVIS_ISOLATION_ROUNDS` says nothing else.
+const ROUNDS: usize = 16;
 /// How long each time.
 const LASTS: Duration = Duration::from_millis(2500);
 
@@ -77,19 +79,59 @@ async fn read(address: String, over: Arc<AtomicBool>, received: Arc<Received>) {
     }
 }
 
-/// Processor time of the thread that runs the chains, in nanoseconds, where the system tells.
-fn chain_time() -> Option<u64> {
-    for task in std::fs::read_dir("/proc/self/task").ok()?.flatten() {
-        let file = |name| std::fs::read_to_string(task.path().join(name)).unwrap_or_default();
-        if file("comm").trim() == "lvis-engine" {
-            return file("schedstat").split(' ').next()?.parse().ok();
-        }
-    }
-    None
+/// Processor time of the thread that runs the chains, over time: in seconds, by seconds of the clock.
+#[derive(Default)]
+struct Log {
+    readings: Mutex<Vec<(f64, f64)>>,
+    /// When the chains' clock began, by ours: no statistics are heard of before they are made.
+    zero: Mutex<Option<f64>>,
 }
 
-/// Mutations a second of wall clock and of the chains' own processor time.
-async fn measure(address: &str, crowd: (usize, usize), received: &Arc<Received>) -> [f64; 2] {
+impl Log {
+    /// Reads every two milliseconds, until it is over; what the system does not tell stays unknown.
+    fn keep(&self, began: Instant, over: &AtomicBool) {
+        let tasks = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
+        let chains = tasks.map(|task| task.path()).find(|task| {
+            std::fs::read_to_string(task.join("comm"))
+                .is_ok_and(|name| name.trim() == "lvis-engine")
+        });
+        let Some(file) = chains.map(|task| task.join("schedstat")) else { return };
+        while !over.load(Ordering::Relaxed) {
+            let text = std::fs::read_to_string(&file).unwrap_or_default();
+            let nanoseconds = text.split(' ').next().and_then(|first| first.parse().ok());
+            let seconds = nanoseconds.map_or(f64::NAN, |n: u64| n as f64 / 1e9);
+            let mut readings = self.readings.lock().expect("no panic");
+            readings.push((began.elapsed().as_secs_f64(), seconds));
+            drop(readings);
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    /// Statistics were heard of now.
+    fn hear(&self, began: Instant, statistics: &Statistics) {
+        let zero = began.elapsed().as_secs_f64() - statistics.elapsed_seconds;
+        let mut least = self.zero.lock().expect("no panic");
+        *least = Some(least.map_or(zero, |least| least.min(zero)));
+    }
+
+    /// The processor time that the chains had had when the statistics were made.
+    fn at(&self, statistics: &Statistics) -> f64 {
+        let readings = self.readings.lock().expect("no panic");
+        let when = self.zero.lock().expect("no panic").unwrap_or(0.0) + statistics.elapsed_seconds;
+        let after = readings.partition_point(|reading| reading.0 < when);
+        match (after.checked_sub(1).and_then(|i| readings.get(i)), readings.get(after)) {
+            (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (when - a.0) / (b.0 - a.0),
+            _ => f64::NAN,
+        }
+    }
+}
+
+/// What the chains had done before and after a crowd was there for a while.
+async fn measure(
+    address: &str,
+    crowd: (usize, usize),
+    received: &Arc<Received>,
+) -> [Statistics; 2] {
     let over = Arc::new(AtomicBool::new(false));
     let mut stalled = Vec::new();
     for _ in 0..crowd.1 {
@@ -102,16 +144,19 @@ async fn measure(address: &str, crowd: (usize, usize), received: &Arc<Received>)
     // Statistics are half a second old at most: they are read once they are from this time.
     tokio::time::sleep(Duration::from_millis(600)).await;
     let (before, _) = look(address).await;
-    let cpu = chain_time();
     tokio::time::sleep(LASTS).await;
     let (after, _) = look(address).await;
-    let cpu = chain_time().zip(cpu).map_or(f64::NAN, |(after, before)| (after - before) as f64);
     over.store(true, Ordering::Relaxed);
     reading.join_all().await;
     drop(stalled);
+    [before, after]
+}
+
+/// Mutations a second of wall clock and of the chains' own processor time.
+fn rates([before, after]: &[Statistics; 2], log: &Log) -> [f64; 2] {
     let steps = (after.totals.steps - before.totals.steps) as f64;
     let seconds = after.elapsed_seconds - before.elapsed_seconds;
-    [steps / seconds, steps / (cpu / 1e9 * seconds / LASTS.as_secs_f64())]
+    [steps / seconds, steps / (log.at(after) - log.at(before))]
 }
 
 /// Times from picking a path to its first proposal, in seconds.
@@ -139,8 +184,17 @@ fn median(values: &[f64]) -> f64 {
     sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
+/// Mean of what the rates with viewers are to those without, in percent more, and its standard error.
+fn compare(with: &[f64], without: &[f64]) -> (f64, f64) {
+    let gains: Vec<f64> = with.iter().zip(without).map(|(a, b)| 100.0 * (a / b - 1.0)).collect();
+    let count = gains.len() as f64;
+    let mean = gains.iter().sum::<f64>() / count;
+    let squares: f64 = gains.iter().map(|gain| (gain - mean).powi(2)).sum();
+    (mean, (squares / (count * (count - 1.0))).sqrt())
+}
+
 #[tokio::test(flavor = "multi_thread", worker_threads = 1)]
-#[ignore = "takes a minute and wants a quiet machine"]
+#[ignore = "takes minutes and wants a quiet machine"]
 async fn viewers_cost_the_chains_little() {
     let daemon = start();
     let address = daemon.address().to_string();
@@ -148,31 +202,47 @@ async fn viewers_cost_the_chains_little() {
         tokio::time::sleep(Duration::from_millis(100)).await;
     }
     let received: Vec<Arc<Received>> = CROWDS.iter().map(|_| Arc::default()).collect();
-    let mut rates = vec![[Vec::new(), Vec::new()]; CROWDS.len()];
-    for _ in 0..ROUNDS {
-        for ((crowd, rates), received) in CROWDS.iter().zip(&mut rates).zip(&received) {
-            let [wall, cpu] = measure(&address, *crowd, received).await;
-            rates[0].push(wall);
-            rates[1].push(cpu);
+    let rounds = std::env::var("LVIS_ISOLATION_ROUNDS").ok().and_then(|text| text.parse().ok());
+    let rounds: usize = rounds.unwrap_or(ROUNDS);
+    let (log, over, began) =
+        (Arc::<Log>::default(), Arc::new(AtomicBool::new(false)), Instant::now());
+    let logging = {
+        let (log, over) = (Arc::clone(&log), Arc::clone(&over));
+        let keep = move || log.keep(began, &over);
+        std::thread::Builder::new().name("log".to_owned()).spawn(keep).expect("a thread")
+    };
+    let mut seen: Vec<Vec<[Statistics; 2]>> = vec![Vec::new(); CROWDS.len()];
+    for round in 0..rounds {
+        for place in 0..CROWDS.len() {
+            // There and back, so that what drifts hits all alike.
+            let i = if round % 2 == 0 { place } else { CROWDS.len() - 1 - place };
+            seen[i].push(measure(&address, CROWDS[i], &received[i]).await);
+            log.hear(began, &look(&address).await.0);
         }
     }
+    over.store(true, Ordering::Relaxed);
+    logging.join().expect("no panic");
+    let rates: Vec<[Vec<f64>; 2]> = seen
+        .iter()
+        .map(|seen| [0, 1].map(|kind| seen.iter().map(|pair| rates(pair, &log)[kind]).collect()))
+        .collect();
     let mut out = stdout();
     let mut say = |line: String| writeln!(out, "{line}").expect("standard output");
     for ((crowd, rates_of), received) in CROWDS.iter().zip(&rates).zip(&received) {
-        let loss = |kind: usize| {
-            let pairs = rates_of[kind].iter().zip(&rates[0][kind]);
-            100.0 * (1.0 - median(&pairs.map(|(with, without)| with / without).collect::<Vec<_>>()))
-        };
+        let [wall, cpu] = [0, 1].map(|kind| compare(&rates_of[kind], &rates[0][kind]));
         let paths = received.paths.load(Ordering::Relaxed) as f64;
-        let each = (ROUNDS * (crowd.0 - crowd.1).max(1)) as f64 * (LASTS.as_secs_f64() + 0.7);
+        let each = (rounds * (crowd.0 - crowd.1).max(1)) as f64 * (LASTS.as_secs_f64() + 0.7);
         say(format!(
-            "{:>2} viewers, {} stalled: {:.0} mutations/s, {:+.2} % of the wall clock's, {:+.2} % of \
-             the chains' own; {:.0} paths/s a viewer of {:.0} bytes, {:.0} without differences",
+            "{:>2} viewers, {} stalled: {:.0} mutations/s; by the clock {:+.2} +- {:.2} %, by the \
+             chains' processor time {:+.2} +- {:.2} %; {:.0} paths/s a viewer of {:.0} bytes, {:.0} \
+             without differences",
             crowd.0,
             crowd.1,
             median(&rates_of[0]),
-            -loss(0),
-            -loss(1),
+            wall.0,
+            wall.1,
+            cpu.0,
+            cpu.1,
             paths / each,
             received.bytes.load(Ordering::Relaxed) as f64 / paths,
             received.full_bytes.load(Ordering::Relaxed) as f64 / paths,

@@ -3,11 +3,13 @@
 //! `citations`, `documents`, `layers` and `tidy` keep the repository in order; the others run the
 //! program. To add a test, add a file with its `#[test]` functions and one line here.
 
+mod cable;
 mod citations;
 mod daemon;
 mod documents;
 mod explorer;
 mod filters;
+mod fuzz;
 mod isolation;
 mod layers;
 mod reconnect;

@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
-use common::{ChainTotals, FailureCount, Statistics, StrategyStatistics};
+use common::{ChainTotals, FailureCount, Queue, Statistics, StrategyStatistics};
 
 use super::{WireError, check};
 use crate::v1;
+
+/// Most queues that a daemon may speak of.
+const MAX_QUEUES: usize = 16;
 
 impl From<&Statistics> for v1::Statistics {
     fn from(s: &Statistics) -> Self {
@@ -23,6 +26,7 @@ impl From<&Statistics> for v1::Statistics {
             paths_sent: s.paths_sent,
             paths_dropped: s.paths_dropped,
             queued_bytes: s.queued_bytes,
+            queues: s.queues.iter().map(Into::into).collect(),
             filter: Some((&s.filter).into()),
             diagnostics: s.diagnostics.as_deref().map(Into::into),
         }
@@ -34,6 +38,7 @@ impl TryFrom<v1::Statistics> for Statistics {
 
     fn try_from(wire: v1::Statistics) -> Result<Self, WireError> {
         check::length("statistics.strategies", wire.strategies.len(), check::MAX_NAMES)?;
+        check::length("statistics.queues", wire.queues.len(), MAX_QUEUES)?;
         Ok(Self {
             epoch: wire.epoch,
             elapsed_seconds: check::finite("statistics.elapsed_seconds", wire.elapsed_seconds)?,
@@ -58,12 +63,32 @@ impl TryFrom<v1::Statistics> for Statistics {
             paths_sent: wire.paths_sent,
             paths_dropped: wire.paths_dropped,
             queued_bytes: wire.queued_bytes,
+            queues: wire
+                .queues
+                .into_iter()
+                .map(TryInto::try_into)
+                .collect::<Result<_, WireError>>()?,
             filter: wire.filter.unwrap_or_default().try_into()?,
             diagnostics: wire
                 .diagnostics
                 .map(|diagnostics| diagnostics.try_into().map(Arc::new))
                 .transpose()?,
         })
+    }
+}
+
+impl From<&Queue> for v1::Queue {
+    fn from(Queue { name, bytes, limit, own }: &Queue) -> Self {
+        Self { name: check::cut(name, check::MAX_NAME), bytes: *bytes, limit: *limit, own: *own }
+    }
+}
+
+impl TryFrom<v1::Queue> for Queue {
+    type Error = WireError;
+
+    fn try_from(wire: v1::Queue) -> Result<Self, WireError> {
+        let v1::Queue { name, bytes, limit, own } = wire;
+        Ok(Self { name: check::text("queue.name", name, check::MAX_NAME)?, bytes, limit, own })
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use common::{
     BatchBuilder, BatchOrigin, Camera, CameraPose, ChainId, ChainTotals, Diagnostics, Event,
     FailureCount, FilmTile, FilterCounts, FilterError, FilterObject, FilterReply, Gap,
-    MAX_FILTER_BYTES, MaterialInfo, NearestMiss, PathBatch, PathHeader, PathId, Rgb, Role,
+    MAX_FILTER_BYTES, MaterialInfo, NearestMiss, PathBatch, PathHeader, PathId, Queue, Rgb, Role,
     SceneFrame, SceneMesh, Shortfall, Statistics, StrategyId, StrategyStatistics, TileGrid,
     TileMaps, UNKNOWN, VertexKind, VertexRecord, Welcome,
 };
@@ -75,6 +75,7 @@ fn statistics() -> Statistics {
         paths_sent: 100,
         paths_dropped: 9,
         queued_bytes: 12,
+        queues: vec![Queue { name: "paths".to_owned(), bytes: 12, limit: 99, own: true }],
         filter: FilterCounts {
             revision: 4,
             seen: 1000,

@@ -27,7 +27,7 @@ pub(crate) async fn soon<F: Future>(what: &str, future: F) -> F::Output {
         .unwrap_or_else(|_| panic!("waits for ever: {what}"))
 }
 
-pub(super) fn session_info() -> SessionInfo {
+pub(crate) fn session_info() -> SessionInfo {
     let pose = CameraPose {
         origin: DVec3::new(0.0, 0.0, 5.0),
         target: DVec3::ZERO,
@@ -53,7 +53,7 @@ pub(super) fn session_info() -> SessionInfo {
 }
 
 /// A strip of triangles.
-pub(super) fn strip(triangles: u32, camera: Camera) -> SceneMesh {
+pub(crate) fn strip(triangles: u32, camera: Camera) -> SceneMesh {
     let count = triangles as usize;
     let white = MaterialInfo {
         name: "white".to_owned(),
@@ -171,7 +171,7 @@ impl Viewer {
 }
 
 /// A path of `vertices`, told apart by `tag`.
-pub(super) fn path(tag: u32, vertices: u32) -> Vec<VertexRecord> {
+pub(crate) fn path(tag: u32, vertices: u32) -> Vec<VertexRecord> {
     (0..vertices)
         .map(|i| VertexRecord {
             position: [tag as f32, i as f32, 0.5],
@@ -185,7 +185,7 @@ pub(super) fn path(tag: u32, vertices: u32) -> Vec<VertexRecord> {
 }
 
 /// A batch of about `bytes` whose paths are keyframes and diffs of two chains, and those paths.
-pub(super) fn batch(bytes: usize) -> (PathBatch, Vec<Vec<VertexRecord>>) {
+pub(crate) fn batch(bytes: usize) -> (PathBatch, Vec<Vec<VertexRecord>>) {
     let mut builder = BatchBuilder::default();
     let mut last = [path(0, 4), path(1, 4)];
     let mut paths = Vec::new();

@@ -124,6 +124,33 @@ async fn a_stalled_viewer_is_told_of_its_gap_and_harms_nobody() {
 }
 
 #[tokio::test]
+async fn a_viewer_that_lets_its_control_lane_fill_is_sent_away_with_a_reason() {
+    let server = start(HubLimits { control_messages: 4, ..HubLimits::default() });
+    let mut deaf = Viewer::join(&server).await.expect("welcome");
+    let mut reading = Viewer::join(&server).await.expect("welcome");
+    server.hub().publish_statistics(Arc::new(Statistics::default()));
+    let (sent, _) = batch(60_000);
+    // What fills the connection first; then statistics pile up, twice a second.
+    let gone = async {
+        while server.hub().viewers() > 1 {
+            server.hub().publish_paths(sent.clone());
+            let event = reading.next().await.expect("whoever reads stays");
+            assert!(!matches!(event, TracerEvent::Goodbye(_)), "whoever reads stays: {event:?}");
+        }
+    };
+    soon("its place is free, although it never reads", gone).await;
+    let mut last = None;
+    while let Some(event) = deaf.next().await {
+        last = Some(event);
+    }
+    match last {
+        Some(TracerEvent::Goodbye(reason)) => assert!(reason.contains("too slowly"), "{reason}"),
+        other => panic!("the reason comes last, not {other:?}"),
+    }
+    stop(server).await;
+}
+
+#[tokio::test]
 async fn another_protocol_version_is_refused_and_both_are_named() {
     let server = start(HubLimits::default());
     let version = Some(v1::ProtocolVersion { major: 9, minor: 3 });

@@ -37,6 +37,8 @@ pub(super) struct Plant<'a> {
     change: (String, Option<Author>),
     /// Viewers have not been told of a change yet.
     untold: bool,
+    /// A reply that found no room; no order is followed before it is given.
+    unsaid: Option<(u64, OrderReply)>,
 }
 
 impl<'a> Plant<'a> {
@@ -62,6 +64,7 @@ impl<'a> Plant<'a> {
             running: true,
             change: (String::new(), None),
             untold: true,
+            unsaid: None,
         }
     }
 
@@ -75,7 +78,13 @@ impl<'a> Plant<'a> {
             let works = self.running && self.ensemble.chain_count() > 0;
             // Chains that run look for orders between two rounds, and others wait for them.
             let wait = if works { Duration::ZERO } else { PAUSE };
-            match orders.recv_timeout(wait) {
+            let order = if self.unsaid.is_none() {
+                orders.recv_timeout(wait)
+            } else {
+                std::thread::sleep(wait);
+                Err(RecvTimeoutError::Timeout)
+            };
+            match order {
                 Ok(order) => {
                     self.follow(order);
                     continue;
@@ -120,7 +129,8 @@ impl<'a> Plant<'a> {
             }
             Err(error) => Some(error),
         };
-        self.hub.publish_reply(session, OrderReply { request, error });
+        self.unsaid = Some((session, OrderReply { request, error }));
+        self.tell();
     }
 
     /// Does what is asked for, and says in a few words what that was.
@@ -203,8 +213,13 @@ impl<'a> Plant<'a> {
         }
     }
 
-    /// Tells everybody of the last change; where the way is full, later.
+    /// Answers the last order and tells everybody of the last change; where the way is full, later.
     fn tell(&mut self) {
+        if let Some((session, reply)) = &self.unsaid
+            && self.hub.publish_reply(*session, reply.clone())
+        {
+            self.unsaid = None;
+        }
         if self.untold {
             self.untold = !self.hub.publish_chains(self.state());
         }

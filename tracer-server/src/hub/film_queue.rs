@@ -41,6 +41,15 @@ impl FilmQueue {
         }
     }
 
+    /// Bytes that wait to be sent, and as many as may: two snapshots, which all viewers share.
+    pub(super) fn byte_len(&self) -> (usize, usize) {
+        let Some(Progress { film, next_row }) = &self.sending else { return (0, 0) };
+        let row = PIXEL_BYTES * film.frame.width as usize;
+        let (sent, whole) = (row * *next_row as usize, row * film.frame.height as usize);
+        let newer = if self.newer.is_some() { whole } else { 0 };
+        (whole - sent + newer, 2 * whole)
+    }
+
     /// True when there is something to send.
     pub(super) fn is_waiting(&self) -> bool {
         self.sending.is_some()

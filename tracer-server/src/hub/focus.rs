@@ -6,7 +6,7 @@ use std::sync::Arc;
 use common::{FocusPath, FocusStep};
 
 /// Most bytes of steps that wait for a viewer: some five thousand of them.
-const FOCUS_BYTES: usize = 2 << 20;
+pub(super) const FOCUS_BYTES: usize = 2 << 20;
 
 /// What the explorer has done.
 #[derive(Clone, Debug)]
@@ -15,6 +15,16 @@ pub struct FocusNews {
     pub step: Option<Arc<FocusStep>>,
     /// Its current path after it.
     pub after: Arc<FocusPath>,
+}
+
+impl FocusNews {
+    /// Bytes that it takes on its way, about.
+    pub(super) fn byte_len(&self) -> usize {
+        match &self.step {
+            Some(step) => step.byte_len(),
+            None => self.after.byte_len(),
+        }
+    }
 }
 
 /// What waits in the lane.

@@ -1,17 +1,20 @@
 //! The two lanes of one viewer: what it must get, and what it gets as far as it can.
 
-use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use common::{FilmTile, FilterReply, FocusPath, FocusStep, Gap, Notice, PathBatch, Statistics};
+use common::{
+    FilmTile, FilterReply, FocusPath, FocusStep, Gap, Notice, PathBatch, Queue, Statistics,
+};
 use tokio::sync::Notify;
 use tokio::sync::futures::Notified;
 use tokio::time::Instant;
+use tokio_util::sync::CancellationToken;
 
 use super::backlog::Backlog;
 use super::budget::Budget;
+use super::control::{Control, ControlQueue};
 use super::film_queue::{FilmQueue, TileOrder};
-use super::focus::{FocusItem, FocusNews, FocusQueue};
+use super::focus::{FOCUS_BYTES, FocusItem, FocusNews, FocusQueue};
 use super::population::Offer;
 use super::{HubLimits, NumberedFilm};
 
@@ -76,11 +79,13 @@ pub(super) struct Lane {
     limits: HubLimits,
     state: Mutex<LaneState>,
     wake: Notify,
+    /// Cancelled when the lanes are closed.
+    ended: CancellationToken,
 }
 
 #[derive(Debug)]
 struct LaneState {
-    control: VecDeque<Control>,
+    control: ControlQueue,
     closed: Option<String>,
     phase: Phase,
 
@@ -94,14 +99,6 @@ struct LaneState {
     explorer_film: FilmQueue,
     /// Whose turn it is when both film and paths wait.
     film_was_last: bool,
-}
-
-/// What a viewer must get.
-#[derive(Debug)]
-enum Control {
-    Statistics(Arc<Statistics>),
-    FilterReply(FilterReply),
-    Notice(Notice),
 }
 
 /// How far the viewer is into the session.
@@ -119,7 +116,7 @@ impl Lane {
     /// Empty lanes of viewer number `session`.
     pub(super) fn new(session: u64, limits: HubLimits, budget: u64, now: Instant) -> Self {
         let state = LaneState {
-            control: VecDeque::new(),
+            control: ControlQueue::default(),
             closed: None,
             phase: Phase::Live,
             backlog: Backlog::default(),
@@ -130,7 +127,8 @@ impl Lane {
             explorer_film: FilmQueue::default(),
             film_was_last: false,
         };
-        Self { session, limits, state: Mutex::new(state), wake: Notify::new() }
+        let ended = CancellationToken::new();
+        Self { session, limits, state: Mutex::new(state), wake: Notify::new(), ended }
     }
 
     /// The viewer's number.
@@ -151,8 +149,10 @@ impl Lane {
         film: Option<NumberedFilm>,
     ) {
         let mut state = self.state();
-        state.control.extend(notices.map(Control::Notice));
-        state.control.extend(statistics.map(Control::Statistics));
+        let statistics = statistics.map(Control::Statistics);
+        for control in notices.map(Control::Notice).chain(statistics) {
+            state.push_control(control, self.limits);
+        }
         state.phase = if film.is_some() { Phase::SnapshotFilm } else { Phase::SnapshotEnd };
         if let Some(film) = film {
             state.film.push(film);
@@ -173,34 +173,42 @@ impl Lane {
         if let Some(statistics) = statistics {
             state.push_control(Control::Statistics(Arc::clone(statistics)), self.limits);
         }
-        drop(state);
-        self.wake.notify_one();
+        self.wake(state);
     }
 
     /// Puts the answer to a filter into the control lane.
     pub(super) fn push_reply(&self, reply: FilterReply) {
-        self.state().push_control(Control::FilterReply(reply), self.limits);
-        self.wake.notify_one();
+        let mut state = self.state();
+        state.push_control(Control::FilterReply(reply), self.limits);
+        self.wake(state);
     }
 
     /// Puts in something of who steers. A state replaces the one before it that is not sent yet.
     pub(super) fn push_notice(&self, notice: Notice) {
         let mut state = self.state();
-        if is_state(&notice) {
-            let kind = std::mem::discriminant(&notice);
-            state.control.retain(|control| match control {
-                Control::Notice(old) => std::mem::discriminant(old) != kind,
-                _ => true,
-            });
-        }
         state.push_control(Control::Notice(notice), self.limits);
-        drop(state);
-        self.wake.notify_one();
+        self.wake(state);
     }
 
     /// Ends the session from the daemon's side.
     pub(super) fn dismiss(&self, reason: &str) {
-        self.state().close(reason.to_owned());
+        let mut state = self.state();
+        state.close(reason.to_owned());
+        self.wake(state);
+    }
+
+    /// Waits until the lanes are closed, and says why they are. A viewer that does not read is told
+    /// nothing else any more.
+    pub(super) async fn closed(&self) -> String {
+        self.ended.cancelled().await;
+        self.state().closed.clone().unwrap_or_default()
+    }
+
+    fn wake(&self, state: MutexGuard<'_, LaneState>) {
+        if state.closed.is_some() {
+            self.ended.cancel();
+        }
+        drop(state);
         self.wake.notify_one();
     }
 
@@ -242,12 +250,29 @@ impl Lane {
         self.state().backlog.pop()
     }
 
-    /// Bytes in the backlog, and most bytes that should wait after it was filtered.
-    pub(super) fn backlog(&self) -> (usize, usize) {
+    /// Most bytes of paths that should wait after they were filtered.
+    pub(super) fn filtered_limit(&self) -> usize {
+        let budgeted = self.state().budget.bytes_per_second() * LANE_SECONDS;
+        (budgeted as usize).max(MIN_LANE_BYTES).min(self.limits.lane_bytes)
+    }
+
+    /// What waits in the lanes.
+    pub(super) fn queues(&self) -> [Queue; 4] {
         let state = self.state();
-        let budgeted = state.budget.bytes_per_second() * LANE_SECONDS;
-        let limit = (budgeted as usize).max(MIN_LANE_BYTES).min(self.limits.lane_bytes);
-        (state.backlog.byte_len() + state.focus.byte_len(), limit)
+        let (film, films) = state.film.byte_len();
+        let (explorer_film, explorer_films) = state.explorer_film.byte_len();
+        let own = |name: &str, bytes: usize, limit: usize| Queue {
+            name: name.to_owned(),
+            bytes: bytes as u64,
+            limit: limit as u64,
+            own: true,
+        };
+        [
+            own("control messages", state.control.byte_len(), self.limits.control_bytes),
+            own("paths to be filtered", state.backlog.byte_len(), self.limits.lane_bytes),
+            own("steps of the explorer", state.focus.byte_len(), FOCUS_BYTES),
+            own("films", film + explorer_film, films + explorer_films),
+        ]
     }
 
     /// Notes what was lost before it reached the lanes.
@@ -271,11 +296,6 @@ impl Lane {
     }
 }
 
-/// True for what a newer notice of its kind makes void.
-fn is_state(notice: &Notice) -> bool {
-    matches!(notice, Notice::Presence(_) | Notice::Explorer(_) | Notice::Chains(_))
-}
-
 fn or_default(budget: u64, limits: HubLimits) -> u64 {
     if budget == 0 { limits.default_budget } else { budget }
 }
@@ -283,12 +303,13 @@ fn or_default(budget: u64, limits: HubLimits) -> u64 {
 impl LaneState {
     /// Puts in what must not be lost, and closes the lanes where there is no more room for it.
     fn push_control(&mut self, control: Control, limits: HubLimits) {
-        if self.control.len() < limits.control_messages {
-            self.control.push_back(control);
-        } else if self.closed.is_none() {
-            let waiting = self.control.len();
+        if self.closed.is_some() {
+            return;
+        }
+        if !self.control.push(control, limits.control_messages, limits.control_bytes) {
+            let (waiting, bytes) = (self.control.len(), self.control.byte_len());
             self.close(format!(
-                "the viewer read too slowly: {waiting} control messages wait for it"
+                "the viewer read too slowly: {waiting} control messages of {bytes} bytes wait for it"
             ));
         }
     }
@@ -297,7 +318,7 @@ impl LaneState {
         if let Some(reason) = &self.closed {
             return Taken::Now(Delivery::Closed(reason.clone()));
         }
-        match self.control.pop_front() {
+        match self.control.pop() {
             Some(Control::Statistics(statistics)) => {
                 return Taken::Statistics(Statistics { viewers, ..Statistics::clone(&statistics) });
             }
@@ -368,7 +389,7 @@ impl LaneState {
     /// Ends the session, and lets go of what will not be sent any more.
     fn close(&mut self, reason: String) {
         self.closed = Some(reason);
-        self.control.clear();
+        self.control = ControlQueue::default();
         self.backlog = Backlog::default();
         self.focus = FocusQueue::default();
         self.film = FilmQueue::default();

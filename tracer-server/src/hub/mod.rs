@@ -16,6 +16,7 @@
 
 mod backlog;
 mod budget;
+mod control;
 mod film_queue;
 mod focus;
 mod lane;
@@ -27,8 +28,8 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use common::{
-    ChainState, CompiledFilter, ExplorerState, FilmFrame, FilterReply, FocusPath, Gap, Notice,
-    OrderReply, PathBatch, Presence, Statistics,
+    ChainState, CompiledFilter, ExplorerState, FilmFrame, FilterReply, FocusPath, Gap,
+    MAX_VERTICES, Notice, OrderReply, PathBatch, Presence, Queue, Statistics,
 };
 use thiserror::Error;
 use tokio::sync::mpsc;
@@ -48,10 +49,14 @@ pub struct HubLimits {
     pub viewers: usize,
     /// Most bytes of paths that wait for the pump.
     pub ingress_bytes: usize,
+    /// Most bytes of films that wait for the pump.
+    pub film_bytes: usize,
     /// Most bytes of paths that wait for one viewer.
     pub lane_bytes: usize,
     /// Most control messages that wait for one viewer; at two a second, half a minute of them.
     pub control_messages: usize,
+    /// Most bytes of control messages that wait for one viewer.
+    pub control_bytes: usize,
     /// Bytes of data a second for a viewer that names no budget.
     pub default_budget: u64,
 }
@@ -59,10 +64,12 @@ pub struct HubLimits {
 impl Default for HubLimits {
     fn default() -> Self {
         Self {
-            viewers: 16,
+            viewers: 32,
             ingress_bytes: 8 << 20,
+            film_bytes: 32 << 20,
             lane_bytes: 4 << 20,
             control_messages: 64,
+            control_bytes: 4 << 20,
             default_budget: 16 << 20,
         }
     }
@@ -74,6 +81,8 @@ const INGRESS_BATCHES: usize = 512;
 const INGRESS_NEWS: usize = 64;
 /// Most steps of the explorer that wait for the pump.
 const INGRESS_FOCUS: usize = 1024;
+/// Most bytes of one of them: no more vertices than a path may have on either side.
+const FOCUS_STEP_BYTES: usize = 160 + 2 * 24 * MAX_VERTICES;
 
 /// The refusal of one viewer too many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -99,6 +108,8 @@ struct Shared {
     viewers: AtomicUsize,
     focus_viewers: AtomicUsize,
     waiting_bytes: AtomicUsize,
+    waiting_film_bytes: AtomicUsize,
+    waiting_focus_bytes: AtomicUsize,
     lost: Lost,
     /// Never touched by producers.
     registry: Mutex<Registry>,
@@ -154,6 +165,8 @@ impl Hub {
             viewers: AtomicUsize::new(0),
             focus_viewers: AtomicUsize::new(0),
             waiting_bytes: AtomicUsize::new(0),
+            waiting_film_bytes: AtomicUsize::new(0),
+            waiting_focus_bytes: AtomicUsize::new(0),
             lost: Lost::default(),
             registry: Mutex::default(),
         });
@@ -189,7 +202,7 @@ impl Hub {
     pub fn publish_film(&self, frame: Arc<FilmFrame>) {
         let area = frame.width as usize * frame.height as usize;
         debug_assert_eq!(frame.pixels.len(), area, "a film has as many pixels as it says");
-        self.publish_news(News::Film(frame));
+        self.publish_frame(frame, News::Film);
     }
 
     /// Hands over statistics; viewers are sent the newest twice a second. Never waits.
@@ -199,7 +212,16 @@ impl Hub {
 
     /// Hands over a snapshot of the explorer's film, for those who watch the explorer. Never waits.
     pub fn publish_explorer_film(&self, frame: Arc<FilmFrame>) {
-        self.publish_news(News::ExplorerFilm(frame));
+        self.publish_frame(frame, News::ExplorerFilm);
+    }
+
+    fn publish_frame(&self, frame: Arc<FilmFrame>, news: impl Fn(Arc<FilmFrame>) -> News) {
+        let (bytes, waiting) = (film_bytes(&frame), &self.shared.waiting_film_bytes);
+        let before = waiting.fetch_add(bytes, Ordering::Relaxed);
+        let fits = before == 0 || before + bytes <= self.shared.limits.film_bytes;
+        if !fits || !self.publish_news(news(frame)) {
+            waiting.fetch_sub(bytes, Ordering::Relaxed);
+        }
     }
 
     /// Hands over what the chains are at. Never waits; false where it must be tried again.
@@ -208,9 +230,11 @@ impl Hub {
         self.news.try_send(News::Chains(state)).is_ok()
     }
 
-    /// Hands over the answer to an order that the viewer of `session` has given. Never waits.
-    pub fn publish_reply(&self, session: u64, reply: OrderReply) {
-        self.publish_news(News::Reply(session, reply));
+    /// Hands over the answer to an order that the viewer of `session` has given. Never waits; false
+    /// where it must be tried again.
+    #[must_use]
+    pub fn publish_reply(&self, session: u64, reply: OrderReply) -> bool {
+        self.news.try_send(News::Reply(session, reply)).is_ok()
     }
 
     /// True while anyone sees what the explorer does.
@@ -221,6 +245,7 @@ impl Hub {
     /// Hands over a step of the explorer. Nothing is lost on the way to the lanes: where the pump is
     /// behind, this waits for it, so it is not for the chains.
     pub fn publish_focus(&self, news: FocusNews) {
+        self.shared.waiting_focus_bytes.fetch_add(news.byte_len(), Ordering::Relaxed);
         let full = match self.focus.try_send(news) {
             Ok(()) | Err(mpsc::error::TrySendError::Closed(_)) => return,
             Err(mpsc::error::TrySendError::Full(news)) => news,
@@ -259,11 +284,13 @@ impl Hub {
         }
     }
 
-    fn publish_news(&self, news: News) {
+    fn publish_news(&self, news: News) -> bool {
         // Where the pump is that far behind, a later snapshot will do.
-        if self.news.try_send(news).is_err() {
+        let sent = self.news.try_send(news).is_ok();
+        if !sent {
             tracing::trace!("a snapshot was skipped, the pump is behind");
         }
+        sent
     }
 
     /// Adds a viewer with a data budget in bytes a second (0 for the default). Its first deliveries
@@ -291,12 +318,33 @@ impl Shared {
         self.registry.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// What waits for the pump.
+    fn queues(&self) -> [Queue; 3] {
+        let shared = |name: &str, bytes: &AtomicUsize, limit: usize| Queue {
+            name: name.to_owned(),
+            bytes: bytes.load(Ordering::Relaxed) as u64,
+            limit: limit as u64,
+            own: false,
+        };
+        let (limits, steps) = (self.limits, INGRESS_FOCUS * FOCUS_STEP_BYTES);
+        [
+            shared("paths from the chains", &self.waiting_bytes, limits.ingress_bytes),
+            shared("films from the chains", &self.waiting_film_bytes, limits.film_bytes),
+            shared("steps from the explorer", &self.waiting_focus_bytes, steps),
+        ]
+    }
+
     /// Brings up to date what producers know of the viewers.
     fn count(&self, registry: &Registry) {
         let focus = registry.lanes.iter().filter(|lane| lane.has_focus()).count();
         self.viewers.store(registry.lanes.len(), Ordering::Relaxed);
         self.focus_viewers.store(focus, Ordering::Relaxed);
     }
+}
+
+/// Bytes of a film's pixels.
+fn film_bytes(frame: &FilmFrame) -> usize {
+    size_of_val(frame.pixels.as_slice())
 }
 
 impl Registry {
@@ -367,7 +415,7 @@ impl Subscription {
     /// Puts a filter into force, for all paths that are looked at from now on, and replies to it. Each
     /// batch names its filter, and no path is lost or seen twice by the change.
     pub fn set_filter(&self, revision: u32, filter: Arc<CompiledFilter>) {
-        let (_, limit) = self.lane.backlog();
+        let limit = self.lane.filtered_limit();
         let reply = FilterReply {
             revision,
             text: filter.text().to_owned(),
@@ -382,6 +430,11 @@ impl Subscription {
     pub fn reply(&self, reply: FilterReply) {
         let epoch = self.shared.registry().statistics.as_ref().map_or(0, |news| news.epoch);
         self.lane.push_reply(FilterReply { epoch, ..reply });
+    }
+
+    /// Waits until the hub ends the session, whether the viewer reads or not, and says why.
+    pub async fn closed(&self) -> String {
+        self.lane.closed().await
     }
 
     /// Waits for what goes to the viewer next. Nothing is lost when the wait is abandoned.
@@ -405,7 +458,7 @@ impl Subscription {
     fn look(&self, now: Instant) -> Result<Delivery, Option<Instant>> {
         let viewers = self.shared.viewers.load(Ordering::Relaxed) as u32;
         let mut population = self.population();
-        let (_, limit) = self.lane.backlog();
+        let limit = self.lane.filtered_limit();
         while let Some((gap, batch)) = self.lane.take_backlog() {
             population.miss(gap, limit);
             if let Some(batch) = batch {
@@ -419,13 +472,21 @@ impl Subscription {
             Taken::ExplorerFilm(order) => Ok(Delivery::ExplorerFilm(order.tile())),
             Taken::Statistics(statistics) => {
                 let (paths_sent, paths_dropped) = population.traffic();
-                let (backlog, _) = self.lane.backlog();
-                let queued_bytes = (backlog + population.byte_len()) as u64;
                 let filter = population.counts();
+                let filtered = Queue {
+                    name: "filtered paths".to_owned(),
+                    bytes: population.byte_len() as u64,
+                    limit: limit as u64,
+                    own: true,
+                };
+                let own = self.lane.queues().into_iter().chain([filtered]);
+                let queues: Vec<_> = self.shared.queues().into_iter().chain(own).collect();
+                let queued_bytes = queues.iter().filter(|q| q.own).map(|q| q.bytes).sum();
                 Ok(Delivery::Statistics(Statistics {
                     paths_sent,
                     paths_dropped,
                     queued_bytes,
+                    queues,
                     filter,
                     ..statistics
                 }))

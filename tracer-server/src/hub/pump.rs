@@ -9,7 +9,7 @@ use tokio::sync::mpsc;
 use tokio::time::{MissedTickBehavior, interval};
 use tokio_util::sync::CancellationToken;
 
-use super::{FocusNews, News, NumberedFilm, Shared};
+use super::{FocusNews, News, NumberedFilm, Shared, film_bytes};
 
 /// Statistics go to every viewer this often.
 const STATISTICS_PERIOD: Duration = Duration::from_millis(500);
@@ -61,6 +61,9 @@ impl Pump {
     }
 
     fn accept(&mut self, news: News) {
+        if let News::Film(frame) | News::ExplorerFilm(frame) = &news {
+            self.shared.waiting_film_bytes.fetch_sub(film_bytes(frame), Ordering::Relaxed);
+        }
         match news {
             News::Statistics(statistics) => {
                 self.shared.registry().statistics = Some(statistics);
@@ -103,6 +106,7 @@ impl Pump {
     }
 
     fn follow(&self, news: &FocusNews) {
+        self.shared.waiting_focus_bytes.fetch_sub(news.byte_len(), Ordering::Relaxed);
         let mut registry = self.shared.registry();
         for lane in &registry.lanes {
             lane.push_focus(news);

@@ -50,7 +50,14 @@ pub(crate) struct Accel {
     /// In the order of the tree's leaves.
     leaves: Vec<BvhTriangle>,
     ball_tree: CwBvh,
+    /// For each shape, the one in the tree that stands for it; empty where each stands for itself.
+    triangle_stands: Vec<u32>,
+    ball_stands: Vec<u32>,
 }
+
+/// Where more shapes than this have one place, a tree holds the first of them only: one over many equal
+/// boxes is too deep to be walked, and no ray could tell them apart.
+const MOST_COPIES: usize = 8;
 
 /// Roots nearer than this to the end of a segment that lies on the sphere are that end.
 const ON_SPHERE: f64 = 1e-6;
@@ -65,13 +72,21 @@ impl Accel {
                 BvhTriangle { v0, v1, v2 }
             })
             .collect();
-        let triangle_tree =
-            build_cwbvh_from_tris(&leaves, BvhBuildParams::medium_build(), &mut elapsed);
+        let place = |t: &BvhTriangle| [t.v0, t.v1, t.v2].map(|v| v.to_array().map(f32::to_bits));
+        let (kept, triangle_stands) = thin(leaves.iter().map(place));
+        let thinned: Vec<BvhTriangle> = kept.iter().map(|&i| leaves[i as usize]).collect();
+        let mut triangle_tree =
+            build_cwbvh_from_tris(&thinned, BvhBuildParams::medium_build(), &mut elapsed);
+        renumber(&mut triangle_tree, &kept);
         let leaves = triangle_tree.primitive_indices.iter().map(|&i| leaves[i as usize]).collect();
 
         let boxes: Vec<Aabb> = balls.iter().map(bounding_box).collect();
-        let ball_tree = build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut elapsed);
-        Self { triangles, balls, triangle_tree, leaves, ball_tree }
+        let place = |b: &Aabb| [b.min, b.max].map(|v| v.to_array().map(f32::to_bits));
+        let (kept, ball_stands) = thin(boxes.iter().map(place));
+        let thinned: Vec<Aabb> = kept.iter().map(|&i| boxes[i as usize]).collect();
+        let mut ball_tree = build_cwbvh(&thinned, BvhBuildParams::medium_build(), &mut elapsed);
+        renumber(&mut ball_tree, &kept);
+        Self { triangles, balls, triangle_tree, leaves, ball_tree, triangle_stands, ball_stands }
     }
 
     pub(crate) fn triangles(&self) -> &[Triangle] {
@@ -85,6 +100,12 @@ impl Accel {
     fn ball_index(&self, primitive: u32) -> Option<usize> {
         let index = (primitive as usize).checked_sub(self.triangles.len())?;
         (index < self.balls.len()).then_some(index)
+    }
+
+    /// The index of the sphere in the tree that stands for this primitive.
+    fn own_ball(&self, primitive: u32) -> Option<usize> {
+        let index = self.ball_index(primitive)?;
+        Some(self.ball_stands.get(index).map_or(index, |&stand| stand as usize))
     }
 
     /// How far rays that leave `primitive` are moved off it.
@@ -164,6 +185,10 @@ impl Accel {
     /// Tells the leaves that a ray's own ends lie on: a plane never meets a ray twice.
     #[inline]
     fn leaf_filter(&self, from: u32, to: u32) -> impl Fn(usize) -> bool + '_ {
+        let stand = |primitive: u32| {
+            self.triangle_stands.get(primitive as usize).copied().unwrap_or(primitive)
+        };
+        let (from, to) = (stand(from), stand(to));
         move |leaf| {
             let primitive = self.triangle_tree.primitive_indices[leaf];
             primitive == from || primitive == to
@@ -174,7 +199,7 @@ impl Accel {
         if self.balls.is_empty() {
             return None;
         }
-        let own = self.ball_index(from.primitive);
+        let own = self.own_ball(from.primitive);
         let mut best: Option<(usize, f64)> = None;
         let ray = Ray::new_inf(from.position.as_vec3a(), direction.as_vec3a());
         self.ball_tree.ray_traverse_anyhit(ray, |_, leaf| {
@@ -195,7 +220,7 @@ impl Accel {
         let toward = b.position - a.position;
         let length = toward.length();
         let direction = toward / length;
-        let (own_a, own_b) = (self.ball_index(a.primitive), self.ball_index(b.primitive));
+        let (own_a, own_b) = (self.own_ball(a.primitive), self.own_ball(b.primitive));
         let ray = Ray::new(a.position.as_vec3a(), direction.as_vec3a(), 0.0, length as f32);
         let mut blocked = false;
         self.ball_tree.ray_traverse_anyhit(ray, |_, leaf| {
@@ -210,6 +235,30 @@ impl Accel {
         });
         blocked
     }
+}
+
+/// The shapes that a tree holds, and for each shape the one that stands for it.
+fn thin<K: Ord>(places: impl Iterator<Item = K>) -> (Vec<u32>, Vec<u32>) {
+    let mut sorted: Vec<(K, u32)> = places.zip(0..).collect();
+    sorted.sort_unstable();
+    let all = 0..sorted.len() as u32;
+    let mut stands: Vec<u32> = all.clone().collect();
+    let mut crowded = false;
+    for copies in sorted.chunk_by(|a, b| a.0 == b.0).filter(|all| all.len() > MOST_COPIES) {
+        crowded = true;
+        for copy in copies {
+            stands[copy.1 as usize] = copies[0].1;
+        }
+    }
+    if !crowded {
+        return (stands, Vec::new());
+    }
+    (all.filter(|&i| stands[i as usize] == i).collect(), stands)
+}
+
+/// Lets the leaves of a tree speak of all shapes, not of those that were kept.
+fn renumber(tree: &mut CwBvh, kept: &[u32]) {
+    tree.primitive_indices.iter_mut().for_each(|index| *index = kept[*index as usize]);
 }
 
 fn bounding_box(ball: &Ball) -> Aabb {

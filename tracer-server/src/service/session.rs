@@ -191,6 +191,7 @@ impl Session {
             tokio::select! {
                 biased;
                 () = messages.closed() => return End::Left("it hung up".to_owned()),
+                reason = self.subscription.closed() => return End::Dismissed(reason),
                 message = next_message, if listens => match self.hear(message) {
                     Heard::Fine => {}
                     Heard::Work => listens_from = Instant::now() + FILTER_INTERVAL,

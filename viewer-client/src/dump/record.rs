@@ -141,11 +141,17 @@ fn vector(key: &str, value: &str) -> Result<DVec3, String> {
     numbers::<3>(key, value).map(DVec3::from)
 }
 
+/// No number is larger: what is that far away is a mistake, as in a scene.
+const LARGEST: f64 = 1e15;
+
 /// `[a, b, ...]`: finite numbers.
 fn numbers<const N: usize>(key: &str, value: &str) -> Result<[f64; N], String> {
-    let problem = || format!("`{key} = {value}` should be {N} finite numbers in brackets");
+    let problem =
+        || format!("`{key} = {value}` should be {N} finite numbers in brackets, of 1e15 at most");
     let inner = value.strip_prefix('[').and_then(|v| v.strip_suffix(']')).ok_or_else(problem)?;
-    let parsed: Option<Vec<f64>> =
-        inner.split(',').map(|n| n.trim().parse().ok().filter(|n: &f64| n.is_finite())).collect();
+    let parsed: Option<Vec<f64>> = inner
+        .split(',')
+        .map(|n| n.trim().parse().ok().filter(|n: &f64| n.abs() <= LARGEST))
+        .collect();
     parsed.and_then(|numbers| numbers.try_into().ok()).ok_or_else(problem)
 }

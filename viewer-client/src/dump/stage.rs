@@ -39,6 +39,9 @@ pub struct Stage {
     pub annotated: bool,
 }
 
+/// Further away than this nothing is drawn.
+const FAR: DVec3 = DVec3::splat(1e30);
+
 impl Stage {
     /// Makes a dump ready, in the frame of a scene where one is shown with it.
     pub fn new(dump: Dump, scene: Option<(SceneFrame, SceneMesh)>) -> Self {
@@ -82,7 +85,8 @@ impl Stage {
 
     fn vertex(&mut self, vertex: &DumpVertex) -> VertexRecord {
         VertexRecord {
-            position: self.frame.to_scene(vertex.position).as_vec3().to_array(),
+            // A camera may be as far from a tiny scene as it likes.
+            position: self.frame.to_scene(vertex.position).clamp(-FAR, FAR).as_vec3().to_array(),
             normal: encode_normal(vertex.normal.as_vec3()),
             kind: vertex.kind,
             event: vertex.event,

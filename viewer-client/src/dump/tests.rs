@@ -159,6 +159,7 @@ fn faults_name_their_line() {
     for (from, to, line, part) in [
         ("p = [0, 0, 0]", "p = [0, nan, 0]", 27, "3 finite numbers"),
         ("p = [0, 0, 0]", "q = [0, 0, 0]", 70, "line 24"),
+        ("p = [0, 0, 0]", "p = [0, 1e39, 0]", 27, "1e15 at most"),
         ("Vertex 2 =>", "Vertex 3 =>", 24, "Vertex 2"),
         ("type = emitterSample", "type = teapot", 70, "`teapot`"),
         ("type = emitterSample", "type = emitterSupernode", 70, "emitterSample"),

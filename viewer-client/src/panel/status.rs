@@ -1,5 +1,6 @@
 //! The bar at the foot: connection, rates, losses, memory.
 
+use common::{Queue, Statistics};
 use egui::{Align, Label, Layout, RichText, Sense, Ui};
 
 use super::Panel;
@@ -121,6 +122,10 @@ fn figures(ui: &mut Ui, world: &World<'_>) {
         counts.gaps, counts.skipped
     );
     figure(ui, "dropped", &format::count(lost as f64), &tip);
+    if let Some(statistics) = statistics {
+        let waiting = format::bytes(statistics.queued_bytes);
+        figure(ui, "waiting", &waiting, &waiting_where(statistics));
+    }
     let bytes = format::bytes(world.status.byte_rate.per_second() as u64);
     let paths = format::count(world.status.path_rate.per_second());
     figure(ui, "paths/s", &paths, &format!("Paths received a second, {bytes}/s"));
@@ -132,6 +137,17 @@ fn figures(ui: &mut Ui, world: &World<'_>) {
         figure(ui, "latency", &value, "How long the daemon took to answer, way and back");
     }
     figure(ui, "mutations/s", &format::count(mutations), "Steps of all chains a second");
+}
+
+/// Every queue of the daemon, with its bound.
+fn waiting_where(statistics: &Statistics) -> String {
+    let line = |queue: &Queue| {
+        let (bytes, limit) = (format::bytes(queue.bytes), format::bytes(queue.limit));
+        let whose = if queue.own { "" } else { ", for all viewers" };
+        format!("\n{}: {bytes} of at most {limit}{whose}", queue.name)
+    };
+    let lines: String = statistics.queues.iter().map(line).collect();
+    format!("What waits at the daemon for this viewer{lines}")
 }
 
 fn figure(ui: &mut Ui, name: &str, value: &str, tip: &str) {

@@ -240,6 +240,11 @@ impl Names {
             "normalization": s.normalization,
             "normalization_error": s.normalization_error,
             "viewers": s.viewers,
+            "memory_bytes": s.memory_bytes,
+            "paths_sent": s.paths_sent,
+            "paths_dropped": s.paths_dropped,
+            "queued_bytes": s.queued_bytes,
+            "queues": s.queues,
             "strategies": strategies,
             "filter": {
                 "revision": s.filter.revision,
