@@ -66,6 +66,23 @@ cloud shown 700
 scene opacity 0.4
 EOF
 
+shot throughput caustic 1280x720 932x720+350+0 60000 <<'EOF'
+panel path off
+panel explorer off
+cloud color throughput
+cloud blend weighted
+cloud shown 900
+scene opacity 0.4
+EOF
+
+shot shading caustic 1280x720 932x720+350+0 5000 <<'EOF'
+panel path off
+panel explorer off
+cloud shown 60
+scene lighting phong
+scene light at 0.5 0.7 0.4
+EOF
+
 shot explorer caustic 1280x860 all 60000 <<'EOF'
 panel image off
 panel statistics off

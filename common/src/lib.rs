@@ -17,8 +17,8 @@ mod steering;
 
 pub use batch::{
     BatchBuilder, BatchError, BatchLimits, BatchOrigin, Completed, MAX_VERTICES, NORMAL_SCALE,
-    PathBatch, PathColumns, PathHeader, PathReader, PathView, VertexColumns, VertexRecord,
-    decode_normal, encode_normal,
+    PathBatch, PathColumns, PathHeader, PathReader, PathView, THROUGHPUT_UNKNOWN, VertexColumns,
+    VertexRecord, decode_normal, decode_throughput, encode_normal, encode_throughput,
 };
 pub use camera::{Camera, CameraError, CameraPose};
 pub use color::Rgb;
@@ -30,7 +30,7 @@ pub use filter::{
     NearestMiss, Place, Selector, SelectorKind, Shortfall, VertexClass, VertexTest, Volume,
 };
 pub use id::{ChainId, MaterialId, NoPathId, PathId, StrategyId};
-pub use mesh::{MaterialInfo, SceneFrame, SceneMesh};
+pub use mesh::{MaterialInfo, SceneFrame, SceneMesh, TexturePreview};
 pub use metric::{Floor, mean_of_smallest, mean_ratio, relative_errors, relative_mse};
 pub use session::{
     ChainTotals, FailureCount, FilmFrame, FilmTile, FilterReply, Gap, Queue, Role, Statistics,

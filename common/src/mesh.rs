@@ -42,6 +42,27 @@ pub struct MaterialInfo {
     pub emission: Rgb,
     /// True where it lets light through, so that a viewer can draw it translucent.
     pub transparent: bool,
+    /// Index of the picture that its colour is read from, if it has one.
+    pub texture: Option<u16>,
+}
+
+/// A picture that is laid over surfaces and repeats in both directions, for viewers: no larger than
+/// they need.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TexturePreview {
+    /// Texels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// sRGB codes of red, green and blue (IEC 61966-2-1), row by row from the top.
+    pub texels: Vec<[u8; 3]>,
+}
+
+impl TexturePreview {
+    /// Texels a side at most, so that one fits into a message.
+    pub const MAX_SIDE: u32 = 512;
+    /// Textures of one scene at most.
+    pub const MAX_COUNT: usize = 256;
 }
 
 /// The scene's surfaces as indexed triangles, in scene units (see [`SceneFrame`]).
@@ -54,6 +75,9 @@ pub struct SceneMesh {
     pub positions: Vec<[f32; 3]>,
     /// Unit normals, one a vertex.
     pub normals: Vec<[f32; 3]>,
+    /// Texture coordinates, one a vertex, or none at all where no material has a texture. (0, 0) is
+    /// the lower left corner of a picture and (1, 1) the upper right one.
+    pub texcoords: Vec<[f32; 2]>,
     /// Three vertex indices a triangle.
     pub triangles: Vec<[u32; 3]>,
     /// Index into `materials`, one a triangle.
@@ -64,6 +88,8 @@ pub struct SceneMesh {
     pub materials: Vec<MaterialInfo>,
     /// The objects that have names, each with its primitives.
     pub objects: Vec<FilterObject>,
+    /// The pictures that materials refer to.
+    pub textures: Vec<TexturePreview>,
     /// The render camera.
     pub camera: Option<Camera>,
 }

@@ -29,6 +29,10 @@ pub struct FrameUniforms {
     pub tone: Vec4,
     /// Opacity, opacity of surfaces that face away, wireframe strength, shading.
     pub surface: Vec4,
+    /// Where the light is, and 1 for Phong's model.
+    pub light: Vec4,
+    /// 1 for textures.
+    pub paint: Vec4,
     /// Newest ordinal, colour mode, 1 for dots at ends only, 1 for logarithmic scales.
     pub count: UVec4,
     /// The plane whose positive side is drawn.
@@ -51,11 +55,32 @@ pub struct LinePoint {
     pub position: [f32; 3],
     /// Colour and radiance code.
     pub color: [u8; 4],
-    /// Number of the path since the viewer started, wrapping.
+    /// Number of the path since the viewer started, in 24 bits; above them acceptance and dwell, see
+    /// [`path_word`].
     pub ordinal: u32,
-    /// Role bits and kind, strategy, colours of chain and class, number of edges.
+    /// Role bits and kind, strategy and number of edges (see [`strategy_and_edges`]), colours of chain
+    /// and class, code of the throughput ([`THROUGHPUT_CODE`]).
     pub info: [u8; 4],
 }
+
+/// Bits of a path's number; those above tell how it was accepted, and how long its chain stayed.
+pub const ORDINAL_BITS: u32 = 24;
+
+/// What a path's points have in common: its number, wrapping, its acceptance probability in
+/// fifteenths, and log2 of its dwell in steps, up to 15.
+pub fn path_word(ordinal: u32, acceptance: f32, dwell: u32) -> u32 {
+    let acceptance = (acceptance.clamp(0.0, 1.0) * 15.0).round() as u32;
+    let dwell = dwell.max(1).ilog2().min(15);
+    ordinal & ((1 << ORDINAL_BITS) - 1) | acceptance << ORDINAL_BITS | dwell << (ORDINAL_BITS + 4)
+}
+
+/// Strategy and number of edges, up to 15 each, in one byte.
+pub fn strategy_and_edges(strategy: u8, edges: usize) -> u8 {
+    strategy.min(15) | (edges.min(15) as u8) << 4
+}
+
+/// Codes a stop, and the stop (log2) of code 1: what a throughput's byte means. 0 is unknown.
+pub const THROUGHPUT_CODE: [f32; 2] = [8.0, -28.0];
 
 impl LinePoint {
     /// How the struct is read, from location 0 on.
@@ -67,24 +92,27 @@ impl LinePoint {
     ];
 }
 
-/// One corner of a triangle: 24 bytes.
+/// One corner of a triangle: 32 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct MeshVertex {
     /// Position in scene units.
     pub position: [f32; 3],
-    /// Unit normal in 32767ths; the last is unused.
+    /// Unit normal in 32767ths; then the texture's number from 1, or 0 without.
     pub normal: [i16; 4],
     /// Square root of the linear colour, and the kind of material.
     pub color: [u8; 4],
+    /// Texture coordinates, upwards.
+    pub texcoord: [f32; 2],
 }
 
 impl MeshVertex {
     /// How the struct is read, from location 0 on.
-    pub const ATTRIBUTES: [Attribute; 3] = [
+    pub const ATTRIBUTES: [Attribute; 4] = [
         Attribute { offset: 0, format: AttributeFormat::Float32x3 },
         Attribute { offset: 12, format: AttributeFormat::Snorm16x4 },
         Attribute { offset: 20, format: AttributeFormat::Unorm8x4 },
+        Attribute { offset: 24, format: AttributeFormat::Float32x2 },
     ];
 }
 
@@ -100,6 +128,8 @@ pub struct Attribute {
 /// How the bytes of an attribute become numbers in the shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AttributeFormat {
+    /// Two floats.
+    Float32x2,
     /// Three floats.
     Float32x3,
     /// Four bytes as numbers from 0 to 1.

@@ -8,8 +8,9 @@ mod layout;
 mod tests;
 
 pub use layout::{
-    Attribute, AttributeFormat, FrameUniforms, LinePoint, MeshVertex, PALETTE_SIZE, RAMP_SIZE,
-    decode_radiance, encode_radiance, material_kind, role,
+    Attribute, AttributeFormat, FrameUniforms, LinePoint, MeshVertex, ORDINAL_BITS, PALETTE_SIZE,
+    RAMP_SIZE, THROUGHPUT_CODE, decode_radiance, encode_radiance, material_kind, path_word, role,
+    strategy_and_edges,
 };
 
 /// One WGSL module.
@@ -37,8 +38,10 @@ macro_rules! shader {
 pub const LINES: Shader = shader!("lines");
 /// Lit surfaces.
 pub const MESH: Shader = shader!("mesh");
+/// Paths that were added up, over the surfaces.
+pub const BLEND: Shader = shader!("blend");
 /// The drawn picture into the window.
 pub const COMPOSITE: Shader = shader!("composite");
 
 /// Every module that ships.
-pub const ALL: [Shader; 3] = [LINES, MESH, COMPOSITE];
+pub const ALL: [Shader; 4] = [LINES, MESH, BLEND, COMPOSITE];

@@ -57,6 +57,8 @@ fn frame_uniforms_are_laid_out_alike() {
             ("fade", offset_of!(FrameUniforms, fade)),
             ("tone", offset_of!(FrameUniforms, tone)),
             ("surface", offset_of!(FrameUniforms, surface)),
+            ("light", offset_of!(FrameUniforms, light)),
+            ("paint", offset_of!(FrameUniforms, paint)),
             ("count", offset_of!(FrameUniforms, count)),
             ("clip", offset_of!(FrameUniforms, clip)),
             ("cue", offset_of!(FrameUniforms, cue)),
@@ -84,6 +86,7 @@ fn inputs(module: &Module, name: &str) -> BTreeMap<u32, (u8, ScalarKind)> {
             let Some(Binding::Location { location, .. }) = member.binding else { continue };
             let shape = match module.types[member.ty].inner {
                 TypeInner::Scalar(scalar) => (1, scalar.kind),
+                TypeInner::Vector { size: VectorSize::Bi, scalar } => (2, scalar.kind),
                 TypeInner::Vector { size: VectorSize::Tri, scalar } => (3, scalar.kind),
                 TypeInner::Vector { size: VectorSize::Quad, scalar } => (4, scalar.kind),
                 ref other => panic!("{name} at {location} is {other:?}"),
@@ -96,6 +99,7 @@ fn inputs(module: &Module, name: &str) -> BTreeMap<u32, (u8, ScalarKind)> {
 
 fn shape(format: AttributeFormat) -> (u8, ScalarKind, u64) {
     match format {
+        AttributeFormat::Float32x2 => (2, ScalarKind::Float, 8),
         AttributeFormat::Float32x3 => (3, ScalarKind::Float, 12),
         AttributeFormat::Unorm8x4 => (4, ScalarKind::Float, 4),
         AttributeFormat::Snorm16x4 => (4, ScalarKind::Float, 8),
@@ -122,6 +126,7 @@ fn vertices_are_read_as_they_are_written() {
     assert_eq!(offset_of!(LinePoint, info), 20, "info of a point");
     assert_eq!(offset_of!(MeshVertex, normal), 12, "normal of a corner");
     assert_eq!(offset_of!(MeshVertex, color), 20, "colour of a corner");
+    assert_eq!(offset_of!(MeshVertex, texcoord), 24, "texture coordinates of a corner");
 
     let lines = inputs(&parse(LINES), "Segment");
     let both = LinePoint::ATTRIBUTES.iter().chain(&LinePoint::ATTRIBUTES);
@@ -163,6 +168,10 @@ fn codes_have_one_meaning() {
     let stops = (layout::CODE_STOPS, layout::CODE_LOWEST);
     assert_eq!(constant(&lines, "CODE_STOPS"), f64::from(stops.0), "range of radiance");
     assert_eq!(constant(&lines, "CODE_LOWEST"), f64::from(stops.1), "lowest radiance");
+    assert_eq!(constant(&lines, "ORDINAL_BITS"), f64::from(ORDINAL_BITS), "ordinal");
+    let [codes, lowest] = THROUGHPUT_CODE;
+    assert_eq!(constant(&lines, "THROUGHPUT_CODES"), f64::from(codes), "codes a stop");
+    assert_eq!(constant(&lines, "THROUGHPUT_LOWEST"), f64::from(lowest), "lowest throughput");
     let mesh = parse(MESH);
     let kinds = [
         ("KIND_TRANSPARENT", material_kind::TRANSPARENT),
@@ -172,6 +181,16 @@ fn codes_have_one_meaning() {
     for (name, kind) in kinds {
         assert_eq!(constant(&mesh, name), f64::from(kind), "{name}");
     }
+}
+
+#[test]
+fn small_numbers_share_a_word() {
+    let parts = |word: u32| (word & 0xff_ffff, word >> 24 & 15, word >> 28);
+    assert_eq!(parts(path_word(0x0100_0007, 1.0, 1)), (7, 15, 0), "the number wraps");
+    assert_eq!(parts(path_word(9, 0.5, 5)), (9, 8, 2), "four to seven steps");
+    assert_eq!(parts(path_word(9, f32::NAN, u32::MAX)), (9, 0, 15), "no number is no acceptance");
+    assert_eq!(strategy_and_edges(255, 3), 0x3f, "a seed is no strategy");
+    assert_eq!(strategy_and_edges(2, 64), 0xf2, "fifteen edges and more");
 }
 
 #[test]

@@ -18,7 +18,11 @@ struct Frame {
     tone: vec4<f32>,
     // Surfaces: opacity, opacity of those that face away, wireframe strength, 1 for shading.
     surface: vec4<f32>,
-    // Ordinal of the newest path, colour mode (see `path_color`), 1 to draw dots at the two ends of a
+    // xyz: the light that surfaces are seen by; w: 1 for Phong's model, 0 for one with a soft sky.
+    light: vec4<f32>,
+    // 1 to draw textures; the rest is unused.
+    paint: vec4<f32>,
+    // Ordinal of the newest path (24 bits), colour mode (see `path_color`), 1 to draw dots at the two ends of a
     // path only, 1 for logarithmic scales.
     count: vec4<u32>,
     // What lies on the positive side of this plane is drawn: dot(xyz, position) + w >= 0.

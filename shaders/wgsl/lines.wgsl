@@ -9,14 +9,18 @@ const ROLE_LAST: u32 = 2u;
 const ROLE_ANNOTATION: u32 = 4u;
 const ROLE_DIMMED: u32 = 8u;
 const KIND_SHIFT: u32 = 4u;
+const ORDINAL_BITS: u32 = 24u;
+const THROUGHPUT_CODES: f32 = 8.0;
+const THROUGHPUT_LOWEST: f32 = -28.0;
 
 // Twin: `LinePoint`, at locations 0 to 3 and again at 4 to 7.
 struct Segment {
     @location(0) position_a: vec3<f32>,
     // rgb: square root of the colour over its largest channel; a: code of the radiance.
     @location(1) color_a: vec4<f32>,
+    // Number of the path; above it acceptance in fifteenths and log2 of the dwell.
     @location(2) ordinal_a: u32,
-    // Role bits and kind of vertex, strategy, chain and class colours, number of edges.
+    // Role bits and kind of vertex, strategy and number of edges, chain and class colours, throughput.
     @location(3) info_a: vec4<u32>,
     @location(4) position_b: vec3<f32>,
     @location(5) color_b: vec4<f32>,
@@ -46,6 +50,11 @@ const END_TINT = vec3<f32>(0.16, 0.48, 1.0);
 
 // Where the ramp of lengths ends, in edges.
 const LONGEST: f32 = 10.0;
+// Where the logarithmic ramp of throughputs begins, in stops.
+const FAINTEST: f32 = -10.0;
+// Where the ramp of dwells ends, in stops: 16 steps and more; a chain is shown for some twenty.
+const LONGEST_DWELL: f32 = 4.0;
+const UNKNOWN = vec3<f32>(0.18, 0.18, 0.18);
 
 fn ramp(place: f32) -> vec3<f32> {
     let x = clamp(place, 0.0, 1.0) * 7.0;
@@ -70,21 +79,33 @@ fn hue_of_luminance(code: f32) -> vec3<f32> {
     return ramp(select(linear, place, frame.count.w == 1u));
 }
 
+fn hue_of_throughput(code: u32) -> vec3<f32> {
+    if code == 0u {
+        return UNKNOWN;
+    }
+    let stops = (f32(code) - 1.0) / THROUGHPUT_CODES + THROUGHPUT_LOWEST;
+    return ramp(select(exp2(stops), 1.0 - stops / FAINTEST, frame.count.w == 1u));
+}
+
 // 1 for the newest path, 1/e after the fading age.
 fn freshness(ordinal: u32) -> f32 {
-    return exp(-f32(frame.count.x - ordinal) / max(frame.fade.x, 1.0));
+    let age = (frame.count.x - ordinal) & ((1u << ORDINAL_BITS) - 1u);
+    return exp(-f32(age) / max(frame.fade.x, 1.0));
 }
 
 fn path_color(color: vec4<f32>, ordinal: u32, info: vec4<u32>) -> vec3<f32> {
     switch frame.count.y {
-        case 1u: { return frame.palette[min(info.y, 15u)].rgb; }
-        case 2u: { return hue_of_length(info.w); }
+        case 1u: { return frame.palette[info.y & 15u].rgb; }
+        case 2u: { return hue_of_length(info.y >> 4u); }
         case 3u: { return hue_of_luminance(color.a); }
         case 4u: { return ramp(freshness(ordinal)); }
         case 5u: { return frame.palette[info.x >> KIND_SHIFT].rgb; }
         case 6u: { return frame.palette[info.z & 15u].rgb; }
         case 7u: { return frame.palette[info.z >> 4u].rgb; }
         case 8u: { return frame.constant.rgb; }
+        case 9u: { return hue_of_throughput(info.w); }
+        case 10u: { return ramp(f32(ordinal >> (ORDINAL_BITS + 4u)) / LONGEST_DWELL); }
+        case 11u: { return ramp(f32((ordinal >> ORDINAL_BITS) & 15u) / 15.0); }
         default: { return color.rgb * color.rgb; }
     }
 }
@@ -243,4 +264,26 @@ fn fs_stroke(in: Fragment) -> @location(0) vec4<f32> {
     let color = in.color * coverage;
     // Glow: less of what lies behind is taken away, so that crossing paths add up like light.
     return vec4<f32>(color.rgb, color.a * (1.0 - frame.fade.z));
+}
+
+// Weighted blending [McGuire and Bavoil 2013]: what no order of drawing changes.
+struct Weighed {
+    // rgb: the sum of weighted colours; a: what shines through all of them, as a product.
+    @location(0) sum: vec4<f32>,
+    // r: the sum of weights.
+    @location(1) weight: vec4<f32>,
+}
+
+@fragment
+fn fs_weighed(in: Fragment) -> Weighed {
+    let distance = length(in.across.xy / in.across.z);
+    let coverage = clamp(in.half_width + 0.5 - distance, 0.0, 1.0);
+    let color = in.color * coverage;
+    // Near paths count more than far ones. Sums of half floats must not overflow.
+    let depth = clamp((in.across.z - frame.cue.y) * frame.cue.z, 0.0, 1.0);
+    let weight = 4.0 * exp(-4.0 * depth);
+    var out: Weighed;
+    out.sum = vec4<f32>(color.rgb * weight, color.a);
+    out.weight = vec4<f32>(color.a * weight, 0.0, 0.0, color.a);
+    return out;
 }

@@ -1,4 +1,4 @@
-// Surfaces: a headlight, a hemisphere, and what the material says.
+// Surfaces: a light, a hemisphere, and what material and texture say.
 
 const KIND_TRANSPARENT: u32 = 1u;
 const KIND_EMITTER: u32 = 2u;
@@ -7,10 +7,16 @@ const KIND_MIRROR: u32 = 3u;
 // Twin: `MeshVertex`.
 struct Corner {
     @location(0) position: vec3<f32>,
+    // xyz: the unit normal; w: number of the texture from 1, in 32767ths, or 0.
     @location(1) normal: vec4<f32>,
     // rgb: square root of the linear colour; a: kind of material in 255ths.
     @location(2) color: vec4<f32>,
+    // Upwards, while rows of texels count downwards.
+    @location(3) texcoord: vec2<f32>,
 }
+
+@group(1) @binding(0) var textures: texture_2d_array<f32>;
+@group(1) @binding(1) var texture_sampler: sampler;
 
 struct Surface {
     @builtin(position) clip: vec4<f32>,
@@ -18,7 +24,9 @@ struct Surface {
     @location(1) normal: vec3<f32>,
     @location(2) color: vec3<f32>,
     @location(3) corner: vec3<f32>,
-    @location(4) @interpolate(flat) kind: u32,
+    @location(4) texcoord: vec2<f32>,
+    // Kind of material, then the number of the texture from 1.
+    @location(5) @interpolate(flat) kind: vec2<u32>,
 }
 
 @vertex
@@ -35,7 +43,8 @@ fn vs_mesh(v: Corner, @builtin(vertex_index) index: u32) -> Surface {
         select(0.0, 1.0, corner == 1u),
         select(0.0, 1.0, corner == 2u),
     );
-    out.kind = u32(v.color.a * 255.0 + 0.5);
+    out.texcoord = v.texcoord;
+    out.kind = vec2<u32>(u32(v.color.a * 255.0 + 0.5), u32(max(v.normal.w, 0.0) * 32767.0 + 0.5));
     return out;
 }
 
@@ -49,6 +58,28 @@ fn edge(in: Surface) -> f32 {
 fn sky(direction: vec3<f32>) -> vec3<f32> {
     let height = 0.5 + 0.5 * dot(direction, frame.up.xyz);
     return mix(vec3<f32>(0.20, 0.19, 0.18), vec3<f32>(0.62, 0.70, 0.82), height);
+}
+
+// The material's colour, read from its texture where it has one.
+fn painted(in: Surface) -> vec3<f32> {
+    let place = vec2<f32>(in.texcoord.x, 1.0 - in.texcoord.y);
+    let texel = textureSample(textures, texture_sampler, place, i32(max(in.kind.y, 1u)) - 1);
+    return select(in.color, texel.rgb, in.kind.y > 0u && frame.paint.x > 0.5);
+}
+
+// Light and shade of a preview with a soft sky.
+fn soft(color: vec3<f32>, normal: vec3<f32>, to_light: vec3<f32>) -> vec3<f32> {
+    // On dark ground surfaces step back behind the paths.
+    let strength = mix(1.0, 0.55, frame.up.w);
+    let facing = max(dot(normal, to_light), 0.0);
+    return strength * color * (0.14 + 0.36 * sky(normal) + 0.50 * facing);
+}
+
+// Phong's model with one point light, and with the numbers of the Lvis of 2014.
+fn phong(color: vec3<f32>, normal: vec3<f32>, to_light: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+    let facing = max(dot(normal, to_light), 0.0);
+    let shine = select(0.0, pow(max(dot(reflect(-to_light, normal), to_eye), 0.0), 4.0), facing > 0.0);
+    return color * (0.05 + 0.7 * facing) + vec3<f32>(shine);
 }
 
 struct Lit {
@@ -65,23 +96,26 @@ fn lit(in: Surface, front: bool) -> Lit {
     let facing = max(dot(normal, to_eye), 0.0);
     let grazing = pow(1.0 - facing, 3.0);
 
-    // On dark ground surfaces step back behind the paths.
-    let strength = mix(1.0, 0.55, frame.up.w);
-    let shaded = strength * in.color * (0.14 + 0.36 * sky(normal) + 0.50 * facing);
-    out.color = mix(in.color, shaded, frame.surface.w);
+    let color = painted(in);
+    let to_light = normalize(frame.light.xyz - in.position);
+    var shaded = soft(color, normal, to_light);
+    if frame.light.w > 0.5 {
+        shaded = phong(color, normal, to_light, to_eye);
+    }
+    out.color = mix(color, shaded, frame.surface.w);
     out.alpha = frame.surface.x;
-    if in.kind == KIND_EMITTER {
+    if in.kind.x == KIND_EMITTER {
         out.color = in.color * (2.2 + 0.8 * facing);
-    } else if in.kind == KIND_MIRROR {
+    } else if in.kind.x == KIND_MIRROR {
         let mirrored = sky(reflect(-to_eye, normal));
         out.color = in.color * (0.15 + 0.85 * mirrored) + 0.25 * grazing;
-    } else if in.kind == KIND_TRANSPARENT {
+    } else if in.kind.x == KIND_TRANSPARENT {
         let shine = pow(max(reflect(-to_eye, normal).x * 0.4 + facing * 0.6, 0.0), 24.0);
         out.color = mix(in.color * 0.35, sky(reflect(-to_eye, normal)) * 1.3, 0.25 + grazing);
         out.color += 0.8 * shine;
         out.alpha *= clamp(0.10 + 0.65 * grazing + 0.5 * shine, 0.0, 0.9);
     }
-    if !front && in.kind != KIND_TRANSPARENT {
+    if !front && in.kind.x != KIND_TRANSPARENT {
         out.alpha *= frame.surface.y;
     }
     out.edge = edge(in) * frame.surface.z;

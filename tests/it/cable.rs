@@ -94,7 +94,7 @@ impl Drop for Cable {
 fn the_far_end() {
     let Ok(address) = std::env::var(ADDRESS) else { return };
     let mut viewer = Viewer::new(Status::new(address.clone(), false));
-    let link = Link::start(Peer::open(address), Box::new(|| {})).expect("a thread");
+    let link = Link::start(Peer::open(address), Box::new(|_| {})).expect("a thread");
     link.set_filter(1, FILTER.to_owned());
     viewer.set_link(link);
     let mut last = String::new();

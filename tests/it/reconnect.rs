@@ -48,7 +48,7 @@ fn a_viewer_survives_its_daemon() {
     let first = daemon(SocketAddr::from(([127, 0, 0, 1], 0)));
     let address = first.address();
     let mut viewer = Viewer::new(Status::new(address.to_string(), false));
-    let link = Link::start(Peer::open(address.to_string()), Box::new(|| {})).expect("a thread");
+    let link = Link::start(Peer::open(address.to_string()), Box::new(|_| {})).expect("a thread");
     viewer.set_link(link);
     until("scene, image and paths", &mut viewer, |v| v.is_settled() && v.paths_received() > 100);
     assert!(viewer.status().is_connected(), "what came, came over a connection");
@@ -78,7 +78,7 @@ fn a_viewer_survives_its_daemon() {
 fn a_viewer_without_a_daemon_says_why_and_goes_on_trying() {
     let mut viewer = Viewer::new(Status::new("127.0.0.1:1".to_owned(), false));
     let link =
-        Link::start(Peer::open("127.0.0.1:1".to_owned()), Box::new(|| {})).expect("a thread");
+        Link::start(Peer::open("127.0.0.1:1".to_owned()), Box::new(|_| {})).expect("a thread");
     viewer.set_link(link);
     let failure = |v: &Viewer| match &v.status().link {
         LinkState::Disconnected { reason, retry_at } if reason.contains("127.0.0.1:1") => {

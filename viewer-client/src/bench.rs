@@ -1,5 +1,8 @@
 //! `viewer-client bench`: how fast paths are drawn, and what they cost in memory.
 
+//!
+//! "CPU side" is the time until all commands are recorded, without what draws them.
+
 use std::io::{self, Write as _};
 use std::time::{Duration, Instant};
 
@@ -8,6 +11,7 @@ use common::{
     BatchBuilder, BatchLimits, ChainId, Event, PathBatch, PathHeader, PathId, StrategyId,
     VertexKind, VertexRecord,
 };
+use cpu_time::ProcessTime;
 use rand_core::{Rng as _, SeedableRng as _};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serde_json::json;
@@ -27,6 +31,8 @@ const REACH: f32 = 512.0;
 const BATCH: u32 = 1000;
 /// Frames whose median is reported.
 const FRAMES: usize = 7;
+/// How long nothing happens.
+const REST: Duration = Duration::from_secs(2);
 /// The view while it is measured; all paths are drawn, as opaque as they are by default.
 const LOOK: [&str; 5] = [
     "cloud budget 8192",
@@ -63,30 +69,35 @@ struct Figures {
     moving_cpu: Duration,
     /// From a change of the view until the whole picture is there again.
     refined: Duration,
-    /// A frame while nothing changes.
-    still: Duration,
-    still_cpu: Duration,
+    /// Processor time of a second in which nothing changes, and the frames drawn in it.
+    rest: Duration,
+    rest_frames: u32,
+    /// A click on a path, until it is found.
+    pick: Duration,
+    /// Resident memory before the first path.
+    empty: usize,
     /// Resident memory of the process in bytes; 0 where the system does not tell.
     memory: usize,
 }
 
 impl Figures {
     const HEADER: &str = "     paths  first picture  whole picture  moving: wall   CPU side  \
-        refined  still: wall   CPU side     memory";
+        refined  a second's rest    picking      empty     memory";
 
     fn line(&self) -> String {
         let ms = |d: Duration| format!("{:.2} ms", 1e3 * d.as_secs_f64());
         let s = |d: Duration| format!("{:.2} s", d.as_secs_f64());
         format!(
-            "{:>10} {:>14} {:>14} {:>13} {:>10} {:>8} {:>12} {:>10} {:>10}",
+            "{:>10} {:>14} {:>14} {:>13} {:>10} {:>8} {:>16} {:>10} {:>10} {:>10}",
             self.paths,
             s(self.first),
             s(self.whole),
             ms(self.moving),
             ms(self.moving_cpu),
             s(self.refined),
-            ms(self.still),
-            ms(self.still_cpu),
+            ms(self.rest),
+            ms(self.pick),
+            format::bytes(self.empty as u64),
             format::bytes(self.memory as u64),
         )
     }
@@ -99,8 +110,10 @@ impl Figures {
             "moving_wall_s": self.moving.as_secs_f64(),
             "moving_cpu_s": self.moving_cpu.as_secs_f64(),
             "refined_s": self.refined.as_secs_f64(),
-            "still_wall_s": self.still.as_secs_f64(),
-            "still_cpu_s": self.still_cpu.as_secs_f64(),
+            "rest_cpu_s_per_s": self.rest.as_secs_f64(),
+            "rest_frames": self.rest_frames,
+            "pick_s": self.pick.as_secs_f64(),
+            "empty_bytes": self.empty,
             "memory_bytes": self.memory,
         })
     }
@@ -116,6 +129,7 @@ fn measure(paths: u32, args: &BenchArgs) -> anyhow::Result<Figures> {
     }
     // Whatever is made once is made before.
     stage.frame(&mut viewer)?;
+    let empty = resident();
 
     let taken = fill(&mut viewer, paths, usize::from(args.vertices));
     let first = taken + stage.frame(&mut viewer)?.wall;
@@ -132,8 +146,13 @@ fn measure(paths: u32, args: &BenchArgs) -> anyhow::Result<Figures> {
     while stage.is_refining() {
         refined += stage.frame(&mut viewer)?.wall;
     }
-    let still =
-        (0..FRAMES).map(|_| stage.frame(&mut viewer)).collect::<anyhow::Result<Vec<_>>>()?;
+    // The interface comes to rest.
+    stage.rest(&mut viewer, REST)?;
+    let before = ProcessTime::now();
+    let rest_frames = stage.rest(&mut viewer, REST)?;
+    let rest = before.elapsed().div_f64(REST.as_secs_f64());
+    let memory = resident();
+    let picks = (0..FRAMES).map(|i| picked(&mut viewer, i)).collect::<anyhow::Result<Vec<_>>>()?;
     Ok(Figures {
         paths,
         first,
@@ -141,10 +160,26 @@ fn measure(paths: u32, args: &BenchArgs) -> anyhow::Result<Figures> {
         moving: median(moving.iter().map(|cost| cost.wall)),
         moving_cpu: median(moving.iter().map(|cost| cost.cpu)),
         refined,
-        still: median(still.iter().map(|cost| cost.wall)),
-        still_cpu: median(still.iter().map(|cost| cost.cpu)),
-        memory: memory_stats::memory_stats().map_or(0, |stats| stats.physical_mem),
+        rest,
+        rest_frames,
+        pick: median(picks.into_iter()),
+        empty,
+        memory,
     })
+}
+
+/// How long click number `i` takes, each at another place.
+fn picked(viewer: &mut Viewer, i: usize) -> anyhow::Result<Duration> {
+    let at = 0.05 * i as f32 - 0.15;
+    let command: Command = format!("path pick {at} {} 0.008", 0.5 * at).parse()?;
+    let started = Instant::now();
+    viewer.apply(command);
+    Ok(started.elapsed())
+}
+
+/// Resident memory of the process in bytes; 0 where the system does not tell.
+fn resident() -> usize {
+    memory_stats::memory_stats().map_or(0, |stats| stats.physical_mem)
 }
 
 fn median(times: impl Iterator<Item = Duration>) -> Duration {

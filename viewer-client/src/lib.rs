@@ -4,6 +4,7 @@
 //! and [`panel`]. Everything the user does is a [`command`].
 
 pub mod app;
+mod backlog;
 pub mod bench;
 pub mod camera;
 pub mod cli;

@@ -4,6 +4,8 @@ use std::time::{Duration, Instant};
 
 /// News is shown this often at most.
 pub const FRAME: Duration = Duration::from_millis(33);
+/// And this often where the cloud stands still, and nobody waits for it.
+pub const CALM: Duration = Duration::from_secs(1);
 /// Drawing news may take one part in this many of the time; the rest is for the user's hand.
 const SHARE: u32 = 3;
 

@@ -97,33 +97,28 @@ struct Beam<'a> {
     at: Vec2,
     reach: f32,
     clip: Vec4,
-    /// Normals of its four sides and of the near plane, pointing inwards.
-    sides: [Vec3; 5],
+    /// Tangents of its four sides: left, right, lower, upper.
+    sides: [f32; 4],
 }
 
 impl<'a> Beam<'a> {
     fn new(lens: &'a Lens, aim: Aim, clip: Vec4) -> Self {
         let [x, y] = aim.at;
-        let side = |axis: Vec3, tangent: f32| axis - tangent * lens.forward;
-        let sides = [
-            side(lens.right, x - aim.reach),
-            -side(lens.right, x + aim.reach),
-            side(lens.up, y - aim.reach),
-            -side(lens.up, y + aim.reach),
-            lens.forward,
-        ];
+        let sides = [x - aim.reach, x + aim.reach, y - aim.reach, y + aim.reach];
         Self { lens, at: Vec2::new(x, y), reach: aim.reach, clip, sides }
     }
 
     /// The sides that a point lies outside of, one bit each: a segment whose ends share one cannot
     /// cross the beam.
     fn code(&self, point: Vec3) -> u8 {
-        let from_eye = point - self.lens.eye;
-        let mut code = 0;
-        for (bit, side) in self.sides.iter().enumerate() {
-            code |= u8::from(from_eye.dot(*side) < 0.0) << bit;
-        }
-        code
+        let [left, right, lower, upper] = self.sides;
+        let d = point - self.lens.eye;
+        let (x, y, z) = (d.dot(self.lens.right), d.dot(self.lens.up), d.dot(self.lens.forward));
+        u8::from(x < left * z)
+            | u8::from(x > right * z) << 1
+            | u8::from(y < lower * z) << 2
+            | u8::from(y > upper * z) << 3
+            | u8::from(z < 0.0) << 4
     }
 
     /// The segment of a path that comes closest, how close, and at which depth.

@@ -37,6 +37,11 @@ impl Names<'_> {
         self.frame.map_or(scene, |frame| frame.to_world(scene))
     }
 
+    /// A point of the scene file in scene units.
+    pub fn scene(&self, world: DVec3) -> DVec3 {
+        self.frame.map_or(world, |frame| frame.to_scene(world))
+    }
+
     /// The name of the material at a vertex; a dash where there is no surface.
     pub fn material(&self, vertex: &VertexRecord) -> &str {
         if vertex.primitive == u32::MAX {

@@ -48,6 +48,7 @@ pub(crate) fn mesh() -> SceneMesh {
         color: Rgb::grey(0.5),
         emission,
         transparent: false,
+        texture: None,
     };
     let positions = vec![
         [-512.0, -512.0, -512.0],
@@ -58,6 +59,7 @@ pub(crate) fn mesh() -> SceneMesh {
         [512.0, 512.0, 512.0],
     ];
     SceneMesh {
+        texcoords: Vec::new(),
         normals: vec![[0.0, 0.0, 1.0]; positions.len()],
         positions,
         triangles: vec![[0, 1, 2], [0, 2, 3], [2, 4, 2]],
@@ -65,6 +67,7 @@ pub(crate) fn mesh() -> SceneMesh {
         primitives: vec![0, 1, 2],
         materials: vec![material("wall", Rgb::BLACK), material("lamp", Rgb::WHITE)],
         objects: vec![FilterObject { name: "room".to_owned(), primitives: 0..2 }],
+        textures: Vec::new(),
         camera: Some(camera()),
     }
 }

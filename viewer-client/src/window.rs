@@ -1,17 +1,18 @@
 //! The viewer in a window of the desktop.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use anyhow::{Context as _, anyhow};
 use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 
 use crate::app::Viewer;
-use crate::connection::{Link, Peer, Waker};
+use crate::connection::{Haste, Link, Peer, Waker};
 use crate::desk::Connect;
 use crate::gpu::Quality;
 use crate::habits::Habits;
-use crate::pace::{FRAME, Pace};
+use crate::pace::{CALM, FRAME, Pace};
 
 /// The window's first size in points.
 const SIZE: [f32; 2] = [1440.0, 860.0];
@@ -50,9 +51,14 @@ pub fn run(viewer: Viewer, peer: Option<Peer>) -> anyhow::Result<()> {
         Viewer::install(&cc.egui_ctx, gpu, quality(gpu));
         let mut viewer = viewer;
         let ctx = cc.egui_ctx.clone();
+        let is_calm = Arc::new(AtomicBool::new(false));
+        let calm = Arc::clone(&is_calm);
         let connect: Connect = Box::new(move |peer| {
-            let ctx = ctx.clone();
-            let waker: Waker = Box::new(move || ctx.request_repaint_after(FRAME));
+            let (ctx, calm) = (ctx.clone(), Arc::clone(&calm));
+            let waker: Waker = Box::new(move |haste| {
+                let patient = haste == Haste::Whenever && calm.load(Ordering::Relaxed);
+                ctx.request_repaint_after(if patient { CALM } else { FRAME });
+            });
             Link::start(peer, waker)
         });
         if let Some(peer) = peer {
@@ -60,7 +66,7 @@ pub fn run(viewer: Viewer, peer: Option<Peer>) -> anyhow::Result<()> {
         }
         let habits = Habits::file().map(|file| Habits::load(&file)).unwrap_or_default();
         viewer.adopt(habits, connect);
-        let app: Box<dyn eframe::App> = Box::new(Window { viewer, pace: Pace::default() });
+        let app: Box<dyn eframe::App> = Box::new(Window { viewer, pace: Pace::default(), is_calm });
         Ok(app)
     };
     eframe::run_native("Lvis", options, Box::new(create)).map_err(|error| {
@@ -82,18 +88,21 @@ pub(crate) fn quality(gpu: &egui_wgpu::RenderState) -> Quality {
 struct Window {
     viewer: Viewer,
     pace: Pace,
+    /// The cloud is frozen: what comes all the time can wait. The connection's thread reads it.
+    is_calm: Arc<AtomicBool>,
 }
 
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        self.is_calm.store(self.viewer.is_frozen(), Ordering::Relaxed);
         match self.pace.wait(Instant::now()) {
-            Some(wait) => ui.ctx().request_repaint_after(wait),
+            Some(wait) if self.viewer.has_news() => ui.ctx().request_repaint_after(wait),
             None if self.viewer.receive() => {
                 self.pace.news(Instant::now());
                 // The next frame begins when this one is done, and tells how long it took.
                 ui.ctx().request_repaint();
             }
-            None => {}
+            Some(_) | None => {}
         }
         if let Some(gpu) = frame.wgpu_render_state()
             && self.viewer.upload(gpu)

@@ -39,6 +39,8 @@ pub struct World<'a> {
     pub moment: Option<&'a Moment>,
     /// See [`World::moment`].
     pub scrub: Option<u64>,
+    /// Paths that have come and are not taken in yet.
+    pub waiting: usize,
     /// HOST:PORT of daemons that were watched, the newest first.
     pub recent: &'a [String],
     /// The file of paths that is played, if one is.

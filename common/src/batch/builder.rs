@@ -1,6 +1,6 @@
 //! Collecting paths into batches, as keyframes and diffs.
 
-use super::{PathBatch, PathHeader, VertexRecord};
+use super::{PathBatch, PathHeader, THROUGHPUT_UNKNOWN, VertexRecord};
 
 /// How large a batch may grow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +25,8 @@ pub struct BatchBuilder {
     batch: PathBatch,
     /// Vertex count of the last path pushed of each chain in the open batch.
     last: Vec<(u32, usize)>,
+    /// Vertices of all paths in the open batch, kept ones included.
+    before: usize,
 }
 
 impl BatchBuilder {
@@ -44,6 +46,17 @@ impl BatchBuilder {
         vertices: &[VertexRecord],
         kept: Option<(usize, usize)>,
     ) -> Completed {
+        self.push_with(header, (vertices, &[]), kept)
+    }
+
+    /// Adds a path of vertices with the throughput at each of them, as far as it is known; see
+    /// [`Self::push`] and [`super::encode_throughput`].
+    pub fn push_with(
+        &mut self,
+        header: &PathHeader,
+        (vertices, throughput): (&[VertexRecord], &[u8]),
+        kept: Option<(usize, usize)>,
+    ) -> Completed {
         let completed =
             if self.batch.byte_len() >= self.limits.bytes { self.finish() } else { None };
         let chain = header.id.chain.0;
@@ -60,6 +73,7 @@ impl BatchBuilder {
         for vertex in &vertices[light..vertices.len() - eye] {
             self.batch.vertices.push(vertex);
         }
+        self.push_throughput(throughput, vertices.len());
         completed
     }
 
@@ -71,8 +85,23 @@ impl BatchBuilder {
     /// The open batch, if it holds anything.
     pub fn finish(&mut self) -> Completed {
         self.last.clear();
+        self.before = 0;
         let batch = std::mem::take(&mut self.batch);
         (!batch.is_empty()).then_some(batch)
+    }
+
+    /// The column is empty until the first throughput that is known; from then on it is whole.
+    fn push_throughput(&mut self, throughput: &[u8], vertices: usize) {
+        let column = &mut self.batch.throughput;
+        let known = throughput.get(..vertices).unwrap_or(throughput);
+        if !known.is_empty() {
+            column.resize(self.before, THROUGHPUT_UNKNOWN);
+            column.extend_from_slice(known);
+        }
+        self.before += vertices;
+        if !column.is_empty() {
+            column.resize(self.before, THROUGHPUT_UNKNOWN);
+        }
     }
 
     fn push_header(&mut self, header: &PathHeader, kept: (usize, usize), inserted: usize) {

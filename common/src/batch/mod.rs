@@ -12,6 +12,7 @@ mod check;
 mod normal;
 mod origin;
 mod reader;
+mod throughput;
 
 use thiserror::Error;
 
@@ -21,6 +22,7 @@ pub use builder::{BatchBuilder, BatchLimits, Completed};
 pub use normal::{NORMAL_SCALE, decode_normal, encode_normal};
 pub use origin::BatchOrigin;
 pub use reader::{PathReader, PathView};
+pub use throughput::{THROUGHPUT_UNKNOWN, decode_throughput, encode_throughput};
 
 /// No path has more vertices than this.
 pub const MAX_VERTICES: usize = 65;
@@ -154,6 +156,8 @@ pub struct PathBatch {
     origin: Box<BatchOrigin>,
     paths: PathColumns,
     vertices: VertexColumns,
+    /// Codes of throughputs: one a vertex of every path, kept ones included; or nothing.
+    throughput: Vec<u8>,
 }
 
 /// Why columns make no batch.
@@ -225,7 +229,7 @@ impl PathBatch {
         check::lengths(&paths, &vertices)?;
         check::values(&paths, &vertices)?;
         check::splices(&paths)?;
-        Ok(Self { sequence, origin: Box::default(), paths, vertices })
+        Ok(Self { sequence, origin: Box::default(), paths, vertices, throughput: Vec::new() })
     }
 
     /// The number of the newest batch of the daemon that is behind this one; see
@@ -243,6 +247,25 @@ impl PathBatch {
     pub fn with_origin(self, origin: BatchOrigin) -> Result<Self, BatchError> {
         check::origin(&origin)?;
         Ok(Self { origin: Box::new(origin), ..self })
+    }
+
+    /// The same batch with the throughput at every vertex of every path, kept ones included; see
+    /// [`encode_throughput`]. An empty column says that nothing is known of it.
+    pub fn with_throughput(self, throughput: Vec<u8>) -> Result<Self, BatchError> {
+        let p = &self.paths;
+        let kept =
+            p.kept_light.iter().zip(&p.kept_eye).map(|(l, e)| usize::from(*l) + usize::from(*e));
+        let expected = kept.sum::<usize>() + self.vertices.kind.len();
+        if !throughput.is_empty() && throughput.len() != expected {
+            let found = throughput.len();
+            return Err(BatchError::Length { column: "throughput", found, expected });
+        }
+        Ok(Self { throughput, ..self })
+    }
+
+    /// The throughput column: one code a vertex of every path, kept ones included; or nothing.
+    pub fn throughput(&self) -> &[u8] {
+        &self.throughput
     }
 
     /// The same batch, which holds every record of one batch of the daemon.
@@ -291,7 +314,7 @@ impl PathBatch {
     pub fn byte_len(&self) -> usize {
         const PER_PATH: usize = 4 + 4 + 8 + 4 + 4 + 4 + 4 + 8 + 4 + 12;
         const PER_VERTEX: usize = 12 + 4 + 2 + 2 + 4;
-        self.len() * PER_PATH + self.vertices.kind.len() * PER_VERTEX
+        self.len() * PER_PATH + self.vertices.kind.len() * PER_VERTEX + self.throughput.len()
     }
 
     /// Reads the paths in order.

@@ -8,6 +8,8 @@ pub struct PathReader<'a> {
     batch: &'a PathBatch,
     record: usize,
     vertex: usize,
+    /// Vertices of all paths before, kept ones included.
+    before: usize,
     chains: Vec<(u32, Vec<VertexRecord>)>,
 }
 
@@ -18,6 +20,8 @@ pub struct PathView<'a> {
     pub header: PathHeader,
     /// Every vertex, from the light to the lens.
     pub vertices: &'a [VertexRecord],
+    /// Codes of the throughputs at them, or nothing where they are not known.
+    pub throughput: &'a [u8],
     /// True when the record carried the whole path.
     pub keyframe: bool,
     /// Index of the first new vertex.
@@ -28,7 +32,7 @@ pub struct PathView<'a> {
 
 impl<'a> PathReader<'a> {
     pub(super) fn new(batch: &'a PathBatch) -> Self {
-        Self { batch, record: 0, vertex: 0, chains: Vec::new() }
+        Self { batch, record: 0, vertex: 0, before: 0, chains: Vec::new() }
     }
 
     /// The next path, or `None` at the end. The view lives until the next call.
@@ -54,8 +58,11 @@ impl<'a> PathReader<'a> {
         let path = &mut self.chains[slot].1;
         let eye_start = path.len() - kept_eye;
         path.splice(kept_light..eye_start, new);
+        let begin = self.before;
+        self.before += path.len();
         Some(PathView {
             header: batch.header(i),
+            throughput: batch.throughput.get(begin..self.before).unwrap_or_default(),
             vertices: path,
             keyframe: kept_light + kept_eye == 0,
             first_new: kept_light,

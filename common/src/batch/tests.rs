@@ -49,17 +49,25 @@ proptest! {
         for (i, (chain, path, kept)) in history.iter().enumerate() {
             let id = PathId { chain: ChainId(*chain), epoch: 0, step: i as u64 };
             let header = PathHeader { id, ..PathHeader::default() };
-            batches.extend(builder.push(&header, path, *kept));
+            // Some paths come without throughputs, some with too few.
+            let known: Vec<u8> = (0..path.len() * (i % 3) / 2).map(|j| (i + j) as u8).collect();
+            batches.extend(builder.push_with(&header, (path, &known), *kept));
         }
         batches.extend(builder.finish());
         let mut seen = 0;
         for batch in batches {
-            let checked = PathBatch::from_columns(7, batch.paths.clone(), batch.vertices.clone());
+            let checked = PathBatch::from_columns(7, batch.paths.clone(), batch.vertices.clone())
+                .and_then(|checked| checked.with_throughput(batch.throughput.clone()));
             prop_assert!(checked.is_ok(), "{checked:?}");
             let mut reader = batch.reader();
             while let Some(view) = reader.next() {
                 let expected = &history[view.header.id.step as usize].1;
                 prop_assert_eq!(view.vertices, expected.as_slice());
+                let i = view.header.id.step as usize;
+                for j in 0..expected.len() * (i % 3) / 2 {
+                    prop_assert_eq!(view.throughput.get(j), Some(&((i + j) as u8)), "{} {}", i, j);
+                }
+                prop_assert!([0, expected.len()].contains(&view.throughput.len()));
                 seen += 1;
             }
         }
@@ -97,6 +105,8 @@ fn hostile_columns_are_refused() {
     assert!(matches!(check(|p, _| p.kept_light[0] = 1), BatchError::NoKeyframe { .. }));
     assert!(matches!(check(|p, _| p.chain[1] = 9), BatchError::NoKeyframe { .. }));
     assert!(matches!(check(|p, _| p.inserted[1] = 200), BatchError::Length { .. }));
+    let short = batch.clone().with_throughput(vec![7; 5]);
+    assert!(matches!(short, Err(BatchError::Length { found: 5, expected: 6, .. })), "{short:?}");
     assert!(matches!(check(|_, v| v.kind[0] = 99), BatchError::UnknownCode { .. }));
     assert!(matches!(check(|_, v| v.position[2][1] = f32::INFINITY), BatchError::NotFinite { .. }));
 }

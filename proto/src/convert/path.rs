@@ -41,6 +41,7 @@ impl From<&PathBatch> for v1::PathBatch {
             event: column::encode(&v.event),
             material: column::encode(&v.material),
             primitive: column::encode(&v.primitive),
+            throughput: column::encode(batch.throughput()),
         }
     }
 }
@@ -51,7 +52,7 @@ impl TryFrom<v1::PathBatch> for PathBatch {
     fn try_from(wire: v1::PathBatch) -> Result<Self, WireError> {
         // Before any count is believed: the columns that are really there bound everything.
         let bytes = wire.step.len() + wire.rgb.len() + wire.position.len() + wire.primitive.len();
-        check::length("path_batch", bytes, MAX_BATCH_BYTES)?;
+        check::length("path_batch", bytes + wire.throughput.len(), MAX_BATCH_BYTES)?;
         let records = wire.record_count as usize;
         let paths = PathColumns {
             chain: column::decode("chain", &wire.chain, records)?,
@@ -86,6 +87,7 @@ impl TryFrom<v1::PathBatch> for PathBatch {
             seen_steps: wire.seen_steps,
             matched_steps: wire.matched_steps,
         };
-        Ok(Self::from_columns(wire.sequence, paths, vertices)?.with_origin(origin)?)
+        let batch = Self::from_columns(wire.sequence, paths, vertices)?;
+        Ok(batch.with_throughput(wire.throughput.to_vec())?.with_origin(origin)?)
     }
 }

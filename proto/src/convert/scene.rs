@@ -1,12 +1,12 @@
 //! The scene, cut into chunks and put together again.
 
-use common::{FilterObject, MaterialInfo, SceneFrame, SceneMesh};
+use common::{FilterObject, MaterialInfo, SceneFrame, SceneMesh, TexturePreview};
 
 use super::{WireError, camera, check, column};
 use crate::v1;
 use crate::v1::scene_chunk::Part;
 
-/// Vertices in a chunk: 24 bytes each.
+/// Vertices in a chunk: 32 bytes each at most.
 const VERTICES_PER_CHUNK: usize = 16 << 10;
 /// Triangles in a chunk: 18 bytes each.
 const TRIANGLES_PER_CHUNK: usize = 16 << 10;
@@ -34,19 +34,31 @@ pub fn scene_chunks<'a>(
         vertex_count: mesh.positions.len() as u32,
         triangle_count: mesh.triangles.len() as u32,
         object_count: mesh.objects.len() as u32,
+        texture_count: mesh.textures.len() as u32,
     };
     let materials = mesh.materials.chunks(MATERIALS_PER_CHUNK).map(|part| {
         Part::Materials(v1::SceneMaterials { materials: part.iter().map(Into::into).collect() })
     });
-    let vertices =
-        mesh.positions.chunks(VERTICES_PER_CHUNK).zip(mesh.normals.chunks(VERTICES_PER_CHUNK)).map(
-            |(positions, normals)| {
-                Part::Vertices(v1::SceneVertices {
-                    position: column::encode(positions),
-                    normal: column::encode(normals),
-                })
-            },
-        );
+    let textures = mesh.textures.iter().map(|texture| {
+        Part::Texture(v1::SceneTexture {
+            width: texture.width,
+            height: texture.height,
+            texels: column::encode(&texture.texels),
+        })
+    });
+    let texcoords = mesh.texcoords.chunks(VERTICES_PER_CHUNK).chain(std::iter::repeat(&[][..]));
+    let vertices = mesh
+        .positions
+        .chunks(VERTICES_PER_CHUNK)
+        .zip(mesh.normals.chunks(VERTICES_PER_CHUNK))
+        .zip(texcoords)
+        .map(|((positions, normals), texcoords)| {
+            Part::Vertices(v1::SceneVertices {
+                position: column::encode(positions),
+                normal: column::encode(normals),
+                texcoord: column::encode(texcoords),
+            })
+        });
     let triangles = mesh
         .triangles
         .chunks(TRIANGLES_PER_CHUNK)
@@ -65,6 +77,7 @@ pub fn scene_chunks<'a>(
     std::iter::once(Part::Header(header))
         .chain(materials)
         .chain(objects)
+        .chain(textures)
         .chain(vertices)
         .chain(triangles)
         .map(|part| v1::SceneChunk { part: Some(part) })
@@ -126,6 +139,10 @@ impl SceneAssembler {
                     count,
                 )?);
                 mesh.normals.extend(column::decode::<[f32; 3]>("normal", &part.normal, count)?);
+                if !part.texcoord.is_empty() {
+                    let texcoords = column::decode("texcoord", &part.texcoord, count)?;
+                    mesh.texcoords.extend::<Vec<[f32; 2]>>(texcoords);
+                }
                 complete_at_most(mesh.positions.len(), header.vertex_count)?;
             }
             Part::Triangles(part) => {
@@ -143,6 +160,10 @@ impl SceneAssembler {
                 mesh.primitives.extend(column::decode::<u32>("primitive", &part.primitive, count)?);
                 complete_at_most(mesh.triangles.len(), header.triangle_count)?;
             }
+            Part::Texture(part) => {
+                mesh.textures.push(part.try_into()?);
+                complete_at_most(mesh.textures.len(), header.texture_count)?;
+            }
         }
         Ok(())
     }
@@ -158,7 +179,8 @@ impl SceneAssembler {
         let whole = mesh.materials.len() == header.material_count as usize
             && mesh.positions.len() == header.vertex_count as usize
             && mesh.triangles.len() == header.triangle_count as usize
-            && mesh.objects.len() == header.object_count as usize;
+            && mesh.objects.len() == header.object_count as usize
+            && mesh.textures.len() == header.texture_count as usize;
         if !whole {
             return Err(WireError::Scene("it is shorter than its header says"));
         }
@@ -177,6 +199,8 @@ impl SceneAssembler {
         check::within("scene.vertex_count", header.vertex_count, 0, MAX_ELEMENTS)?;
         check::within("scene.triangle_count", header.triangle_count, 0, MAX_ELEMENTS)?;
         check::within("scene.object_count", header.object_count, 0, MAX_ELEMENTS)?;
+        let most = TexturePreview::MAX_COUNT as u32;
+        check::within("scene.texture_count", header.texture_count, 0, most)?;
         self.header = Some(header);
         Ok(())
     }
@@ -192,7 +216,15 @@ fn complete_at_most(found: usize, announced: u32) -> Result<(), WireError> {
 fn check_mesh(mesh: &SceneMesh) -> Result<(), WireError> {
     check::all_finite("position", mesh.positions.as_flattened())?;
     check::all_finite("normal", mesh.normals.as_flattened())?;
+    check::all_finite("texcoord", mesh.texcoords.as_flattened())?;
     let vertices = mesh.positions.len();
+    if !mesh.texcoords.is_empty() && mesh.texcoords.len() != vertices {
+        return Err(WireError::Scene("only some vertices have texture coordinates"));
+    }
+    let textures = mesh.textures.len();
+    if mesh.materials.iter().filter_map(|m| m.texture).any(|index| usize::from(index) >= textures) {
+        return Err(WireError::Scene("a material names a texture that is not there"));
+    }
     if mesh.triangles.as_flattened().iter().any(|&index| index as usize >= vertices) {
         return Err(WireError::Scene("a triangle names a vertex that is not there"));
     }
@@ -234,7 +266,19 @@ impl From<&MaterialInfo> for v1::Material {
             color: Some(material.color.into()),
             emission: Some(material.emission.into()),
             transparent: material.transparent,
+            texture: material.texture.map_or(0, |index| u32::from(index) + 1),
         }
+    }
+}
+
+impl TryFrom<v1::SceneTexture> for TexturePreview {
+    type Error = WireError;
+
+    fn try_from(wire: v1::SceneTexture) -> Result<Self, WireError> {
+        let width = check::within("texture.width", wire.width, 1, Self::MAX_SIDE)?;
+        let height = check::within("texture.height", wire.height, 1, Self::MAX_SIDE)?;
+        let texels = column::decode("texels", &wire.texels, (width * height) as usize)?;
+        Ok(Self { width, height, texels })
     }
 }
 
@@ -242,12 +286,16 @@ impl TryFrom<v1::Material> for MaterialInfo {
     type Error = WireError;
 
     fn try_from(wire: v1::Material) -> Result<Self, WireError> {
+        let most = TexturePreview::MAX_COUNT as u32;
         Ok(Self {
             name: check::text("material.name", wire.name, check::MAX_NAME)?,
             model: check::text("material.model", wire.model, check::MAX_NAME)?,
             color: camera::color("material.color", wire.color)?,
             emission: camera::color("material.emission", wire.emission)?,
             transparent: wire.transparent,
+            texture: check::within("material.texture", wire.texture, 0, most)?
+                .checked_sub(1)
+                .map(|index| index as u16),
         })
     }
 }

@@ -6,8 +6,8 @@ use common::{
     BatchBuilder, BatchOrigin, Camera, CameraPose, ChainId, ChainTotals, Diagnostics, Event,
     FailureCount, FilmTile, FilterCounts, FilterError, FilterObject, FilterReply, Gap,
     MAX_FILTER_BYTES, MaterialInfo, NearestMiss, PathBatch, PathHeader, PathId, Queue, Rgb, Role,
-    SceneFrame, SceneMesh, Shortfall, Statistics, StrategyId, StrategyStatistics, TileGrid,
-    TileMaps, UNKNOWN, VertexKind, VertexRecord, Welcome,
+    SceneFrame, SceneMesh, Shortfall, Statistics, StrategyId, StrategyStatistics, TexturePreview,
+    TileGrid, TileMaps, UNKNOWN, VertexKind, VertexRecord, Welcome,
 };
 use glam::DVec3;
 use proptest::prelude::*;
@@ -130,15 +130,20 @@ fn mesh(triangles: u32) -> SceneMesh {
         color: Rgb::grey(0.5),
         emission: Rgb::BLACK,
         transparent: false,
+        texture: (name == "floor").then_some(1),
     };
+    let texels = (0..6).map(|i| [i, 2 * i, 255 - i]).collect();
+    let texture = TexturePreview { width: 3, height: 2, texels };
     SceneMesh {
         positions: (0..count + 2).map(|i| [i as f32, 0.0, 1.0]).collect(),
         normals: vec![[0.0, 0.0, 1.0]; count + 2],
+        texcoords: (0..count + 2).map(|i| [0.5 * i as f32, -1.0]).collect(),
         triangles: (0..triangles).map(|i| [i, i + 1, i + 2]).collect(),
         triangle_materials: (0..count).map(|i| (i % 2) as u16).collect(),
         primitives: (0..triangles).collect(),
         materials: vec![material("wall"), material("floor")],
         objects: vec![FilterObject { name: "strip".to_owned(), primitives: 0..triangles }],
+        textures: vec![TexturePreview { width: 1, height: 1, texels: vec![[9; 3]] }, texture],
         camera: Some(camera()),
     }
 }
@@ -429,6 +434,17 @@ fn scenes_that_do_not_hold_together_are_refused() {
     assert!(assemble(chunks(&stray)).is_err(), "an index out of range");
     let unpainted = SceneMesh { triangle_materials: vec![2; 3], ..good.clone() };
     assert!(assemble(chunks(&unpainted)).is_err(), "a material out of range");
+    let bare = SceneMesh { texcoords: vec![[0.0; 2]; 4], ..good.clone() };
+    assert!(assemble(chunks(&bare)).is_err(), "vertices without texture coordinates");
+    let odd = SceneMesh { texcoords: vec![[f32::INFINITY; 2]; 5], ..good.clone() };
+    assert!(assemble(chunks(&odd)).is_err(), "infinite texture coordinates");
+    let blank = SceneMesh { textures: vec![good.textures[0].clone()], ..good.clone() };
+    assert!(assemble(chunks(&blank)).is_err(), "a texture out of range");
+    for (width, height, texels) in [(3, 3, 6), (0, 2, 0), (513, 1, 513), (u32::MAX, u32::MAX, 1)] {
+        let texture = TexturePreview { width, height, texels: vec![[0; 3]; texels] };
+        let wrong = SceneMesh { textures: vec![texture; 2], ..good.clone() };
+        assert!(assemble(chunks(&wrong)).is_err(), "{width} x {height} of {texels} texels");
+    }
     let torn = SceneMesh { positions: vec![[f32::NAN; 3]; 5], ..good };
     assert!(assemble(chunks(&torn)).is_err(), "NaN");
 }

@@ -61,15 +61,18 @@ pub(crate) fn strip(triangles: u32, camera: Camera) -> SceneMesh {
         color: Rgb::WHITE,
         emission: Rgb::BLACK,
         transparent: false,
+        texture: None,
     };
     SceneMesh {
         positions: (0..count + 2).map(|i| [i as f32, (i % 2) as f32, 0.0]).collect(),
+        texcoords: Vec::new(),
         normals: vec![[0.0, 0.0, 1.0]; count + 2],
         triangles: (0..triangles).map(|i| [i, i + 1, i + 2]).collect(),
         triangle_materials: vec![0; count],
         primitives: (0..triangles).collect(),
         materials: vec![white],
         objects: Vec::new(),
+        textures: Vec::new(),
         camera: Some(camera),
     }
 }

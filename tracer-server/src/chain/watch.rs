@@ -19,6 +19,7 @@ pub struct Watch {
     header: PathHeader,
     kept: Option<(usize, usize)>,
     vertices: Vec<VertexRecord>,
+    throughput: Vec<u8>,
 }
 
 impl Watch {
@@ -34,6 +35,7 @@ impl Watch {
             header: PathHeader::default(),
             kept: None,
             vertices: Vec::new(),
+            throughput: Vec::new(),
         }
     }
 
@@ -75,12 +77,14 @@ impl Watch {
         self.header = chain.header();
         self.kept = kept;
         chain.current().record_into(&mut self.vertices);
+        chain.current().throughputs_into(&mut self.throughput);
     }
 
     fn put(&mut self) {
         self.header.weight = self.header.dwell as f32 * self.decimation;
         // A state that was left at once stands for no step, but the next one is a diff against it.
-        let completed = self.builder.push(&self.header, &self.vertices, self.kept);
+        let path = (self.vertices.as_slice(), self.throughput.as_slice());
+        let completed = self.builder.push_with(&self.header, path, self.kept);
         self.completed.extend(completed);
     }
 }

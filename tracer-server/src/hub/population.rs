@@ -324,7 +324,7 @@ impl Open {
         let Some(weight) = weight else { return };
         let header = common::PathHeader { weight, ..path.header };
         let kept = self.shared.get(&chain).copied();
-        let full = self.builder.push(&header, path.vertices, kept);
+        let full = self.builder.push_with(&header, (path.vertices, path.throughput), kept);
         debug_assert!(full.is_none(), "the batch has no limit of its own");
         self.shared.insert(chain, (usize::MAX, usize::MAX));
     }

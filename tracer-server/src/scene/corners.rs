@@ -43,6 +43,14 @@ impl Corners {
         }
     }
 
+    /// The texture coordinates at the corners of a triangle, where it has any.
+    pub(super) fn texcoords(&self, primitive: usize) -> Option<[Vec2; 3]> {
+        self.texcoords
+            .get(primitive)
+            .copied()
+            .filter(|corners| corners.iter().all(|c| c.is_finite()))
+    }
+
     /// Forgets the texture coordinates.
     pub(super) fn drop_texcoords(&mut self) {
         self.texcoords = Vec::new();

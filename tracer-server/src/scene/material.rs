@@ -163,6 +163,17 @@ pub enum Coding {
 }
 
 impl Coding {
+    /// The sRGB code that comes nearest to a number in [0, 1].
+    pub(super) fn encode_srgb(value: f64) -> u8 {
+        let value = value.clamp(0.0, 1.0);
+        let share = if value <= 0.003_130_8 {
+            12.92 * value
+        } else {
+            1.055 * value.powf(1.0 / 2.4) - 0.055
+        };
+        (255.0 * share).round() as u8
+    }
+
     /// The number in [0, 1] that a code stands for.
     pub fn decode(self, code: u8) -> f64 {
         self.decode_share(f64::from(code) / 255.0)

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use common::Rgb;
+use common::{Rgb, TexturePreview};
 use glam::DVec2;
 
 use super::description::{Coding, ColorInput, NumberInput, Texture};
@@ -39,6 +39,27 @@ impl Map {
             left * (1.0 - across) + right * across
         };
         row(y) * (1.0 - down) + row(y_next) * down
+    }
+
+    /// The map times `factor` as small as viewers want it: each texel is the mean of a block.
+    pub(super) fn preview(&self, factor: Rgb) -> TexturePreview {
+        let side = self.width.max(self.height).div_ceil(TexturePreview::MAX_SIDE as usize).max(1);
+        let (width, height) = (self.width.div_ceil(side), self.height.div_ceil(side));
+        let block = |first: usize, count: usize| first * side..((first + 1) * side).min(count);
+        let mean = |(x, y): (usize, usize)| {
+            let (columns, rows) = (block(x, self.width), block(y, self.height));
+            let count = columns.len() * rows.len();
+            let places = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
+            let sum = places.fold(Rgb::BLACK, |sum, (x, y)| sum + self.texel(x, y));
+            let mean = sum * (1.0 / count as f64) * factor;
+            [mean.r, mean.g, mean.b].map(Coding::encode_srgb)
+        };
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        TexturePreview {
+            width: width as u32,
+            height: height as u32,
+            texels: places.map(mean).collect(),
+        }
     }
 
     fn texel(&self, x: usize, y: usize) -> Rgb {
@@ -105,6 +126,26 @@ mod tests {
         assert_eq!(at(0.25, 0.75), Rgb::new(1.0, 0.0, 0.0), "the first one is at the top left");
         assert_eq!(at(0.75, 0.25), Rgb::new(0.0, 0.0, 1.0), "the last one at the bottom right");
         assert_eq!(at(0.5, 0.5), Rgb::new(0.25, 0.0, 0.25), "the middle is the mean of all");
+    }
+
+    #[test]
+    fn a_preview_is_small_and_as_bright() {
+        let texels: Vec<_> =
+            (0..1030 * 3).map(|i| if i % 2 == 0 { [255; 3] } else { [0; 3] }).collect();
+        let map = Map::new(&Texture {
+            name: "stripes".to_owned(),
+            width: 1030,
+            height: 3,
+            texels: texels.into(),
+            coding: Coding::Linear,
+        });
+        let preview = map.preview(Rgb::new(1.0, 0.5, 0.0));
+        assert_eq!((preview.width, preview.height, preview.texels.len()), (344, 1, 344), "small");
+        // Two columns of the first three are white.
+        let code = |share: f64, factor: f64| Coding::encode_srgb(share / 9.0 * factor);
+        assert_eq!(preview.texels[0], [code(6.0, 1.0), code(6.0, 0.5), 0], "the first block");
+        let whole = checks().preview(Rgb::WHITE);
+        assert_eq!(whole.texels, [[255, 0, 0], [0; 3], [0; 3], [0, 0, 255]], "kept as it is");
     }
 
     #[test]

@@ -5,12 +5,12 @@ mod filtering;
 mod playing;
 mod selecting;
 
-use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use common::{Appearance, Gaze};
 use egui_wgpu::RenderState;
 
+use crate::backlog::Backlog;
 use crate::camera::{Bounds, ViewCamera};
 use crate::command::{
     CameraCommand, CloudCommand, Command, ImageCommand, LayoutCommand, PathCommand,
@@ -57,7 +57,7 @@ pub struct Viewer {
     /// Hash of the scene that is shown.
     scene_hash: String,
     link: Option<Link>,
-    waiting: VecDeque<common::PathBatch>,
+    waiting: Backlog,
     panels: Vec<(Slot, Box<dyn Panel>)>,
     stale: Stale,
     /// The graphics card holds paths of this viewer, not of one before it.
@@ -110,7 +110,7 @@ impl Viewer {
             model: None,
             scene_hash: String::new(),
             link: None,
-            waiting: VecDeque::new(),
+            waiting: Backlog::default(),
             panels: panel::all(),
             stale: Stale { surfaces: true, aids: true },
             uploaded_any: false,
@@ -209,15 +209,26 @@ impl Viewer {
 
     /// True when scene, image, statistics and all paths that have come are taken in.
     pub fn is_settled(&self) -> bool {
+        let enough = self.waiting.paths() <= self.settings.cloud.threshold as usize;
         let whole = self.model.is_some() && self.darkroom.film.size() != [0, 0];
         let idle =
             self.script.is_empty() && self.filter_changed.is_none() && !self.darkroom.is_busy();
-        whole && idle && self.waiting.is_empty() && self.status.statistics.is_some()
+        whole && idle && enough && self.status.statistics.is_some()
     }
 
     /// What is known of the daemon.
     pub fn status(&self) -> &Status {
         &self.status
+    }
+
+    /// True when something has come that is not taken in.
+    pub fn has_news(&self) -> bool {
+        self.link.as_ref().is_some_and(Link::has_news)
+    }
+
+    /// True while the user wants the paths to stand still.
+    pub fn is_frozen(&self) -> bool {
+        self.settings.cloud.frozen
     }
 
     /// Takes in what has come. True when there was anything.
@@ -229,7 +240,10 @@ impl Viewer {
         news |= self.darkroom.collect(&mut self.settings.image, &mut self.status);
         let time = self.started.elapsed().as_secs_f64();
         for _ in 0..BATCHES_PER_FRAME {
-            let Some(batch) = self.waiting.pop_front() else { break };
+            if !self.waiting.is_due(self.settings.cloud.threshold as usize) {
+                break;
+            }
+            let Some(batch) = self.waiting.pop() else { break };
             if batch.origin().revision < self.filter_in_force {
                 continue;
             }
@@ -317,7 +331,10 @@ impl Viewer {
         if delivery.gaps > 0 {
             self.store.note_gap(delivery.gap.paths);
         }
-        self.waiting.extend(delivery.batches);
+        let gone = self.waiting.extend(delivery.batches, self.settings.cloud.limit as usize);
+        if gone > 0 {
+            self.store.note_gap(gone as u64);
+        }
         self.status.latency = delivery.latency.or(self.status.latency);
         if let Some(state) = delivery.state {
             self.status.link = state;
@@ -512,6 +529,7 @@ impl Viewer {
             playback: self.playback.as_ref(),
             counted: self.counted.as_ref(),
             scrub: self.scrub,
+            waiting: self.waiting.paths(),
             recent: &self.desk.habits.recent,
             model: self.model.as_ref(),
             now: Instant::now(),
@@ -519,7 +537,7 @@ impl Viewer {
     }
 
     /// Countdowns run by themselves.
-    fn keep_time(&self, ctx: &egui::Context) {
+    fn keep_time(&mut self, ctx: &egui::Context) {
         if let Some(notice) = &self.status.notice {
             let left = NOTICE_TIME.saturating_sub(notice.at.elapsed());
             if !left.is_zero() {
@@ -529,7 +547,7 @@ impl Viewer {
         if self.filter_changed.is_some() {
             ctx.request_repaint_after(HAND);
         }
-        if !self.waiting.is_empty() {
+        if self.waiting.is_due(self.settings.cloud.threshold as usize) {
             ctx.request_repaint();
         } else if self.darkroom.is_busy() {
             ctx.request_repaint_after(Duration::from_millis(50));
@@ -545,8 +563,9 @@ impl Viewer {
             return false;
         };
         if std::mem::take(&mut self.stale.surfaces) {
-            let corners = self.model.as_ref().map(|m| corners(&m.mesh)).unwrap_or_default();
-            renderer.set_mesh(&corners);
+            let mesh = self.model.as_ref().map(|model| &model.mesh);
+            let textures = mesh.map(|mesh| mesh.textures.as_slice()).unwrap_or_default();
+            renderer.set_mesh(&mesh.map(corners).unwrap_or_default(), textures);
         }
         if std::mem::take(&mut self.stale.aids) {
             renderer.set_aids(&self.aids());

@@ -22,6 +22,10 @@ pub enum CloudCommand {
     Fade(f32),
     /// How many of the newest paths are drawn.
     Shown(u32),
+    /// How many paths may wait to be taken in.
+    Limit(u32),
+    /// How many must wait before any is taken in.
+    Threshold(u32),
     /// Memory for paths, in MiB.
     Budget(u32),
     /// What the colour says.
@@ -34,6 +38,8 @@ pub enum CloudCommand {
     Marks(Marks),
     /// How values become places on the ramp of colours.
     Scale(ColorScale),
+    /// What becomes of paths that cross on the screen.
+    Blend(Blend),
     /// How much distance dims paths.
     Cue(f32),
     /// Relative opacity of paths that the filter leaves out; 0 hides them.
@@ -63,6 +69,33 @@ impl fmt::Display for Marks {
             Self::Lines => "lines",
             Self::Vertices => "vertices",
             Self::Ends => "ends",
+        })
+    }
+}
+
+/// What becomes of paths that cross on the screen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Blend {
+    /// The newest lies on top, and on dark ground glows.
+    #[default]
+    Newest,
+    /// All count by their opacity, near ones more, in whatever order they came.
+    Weighted,
+    /// They add up like light, in whatever order they came.
+    Add,
+}
+
+impl Blend {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Newest, Self::Weighted, Self::Add];
+}
+
+impl fmt::Display for Blend {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Newest => "newest",
+            Self::Weighted => "weighted",
+            Self::Add => "add",
         })
     }
 }
@@ -113,11 +146,18 @@ pub enum ColorMode {
     Class,
     /// Nothing: all paths alike.
     Constant,
+    /// The throughput at each vertex, on a ramp: what is left of the light on its way from there to
+    /// the lens.
+    Throughput,
+    /// How many steps its chain stayed, on a ramp.
+    Dwell,
+    /// The probability with which it was accepted, on a ramp.
+    Acceptance,
 }
 
 impl ColorMode {
     /// All, in the order of the shader's codes.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 12] = [
         Self::Radiance,
         Self::Strategy,
         Self::Length,
@@ -127,11 +167,14 @@ impl ColorMode {
         Self::Chain,
         Self::Class,
         Self::Constant,
+        Self::Throughput,
+        Self::Dwell,
+        Self::Acceptance,
     ];
 
     /// True when the colours come from the ramp, and the scale says how.
     pub fn has_scale(self) -> bool {
-        matches!(self, Self::Length | Self::Luminance)
+        matches!(self, Self::Length | Self::Luminance | Self::Throughput)
     }
 }
 
@@ -147,6 +190,9 @@ impl fmt::Display for ColorMode {
             Self::Chain => "chain",
             Self::Class => "class",
             Self::Constant => "constant",
+            Self::Throughput => "throughput",
+            Self::Dwell => "dwell",
+            Self::Acceptance => "acceptance",
         })
     }
 }
@@ -159,15 +205,19 @@ pub(super) const FORMS: &[Form] = &[
     ("cloud hidden X", "relative opacity behind surfaces (0 to 1)"),
     ("cloud fade PATHS", "after how many newer paths a path has faded"),
     ("cloud shown PATHS", "how many of the newest paths are drawn"),
+    ("cloud limit PATHS", "how many paths may wait; when more do, the oldest go"),
+    ("cloud threshold PATHS", "how many paths must wait before they are taken in and filtered"),
     ("cloud budget MIB", "memory for paths"),
     (
-        "cloud color radiance|strategy|length|luminance|age|kind|chain|class|constant",
+        "cloud color radiance|strategy|length|luminance|age|kind|chain|class|constant|\
+         throughput|dwell|acceptance",
         "what the colour says",
     ),
     ("cloud ends on|off|toggle", "tint the light end and the camera end"),
     ("cloud dots PIXELS", "radius of the dots at inner vertices, 0 for none"),
     ("cloud marks lines|vertices|ends", "what is drawn of a path"),
-    ("cloud scale log|linear", "how lengths and luminances become colours"),
+    ("cloud scale log|linear", "how lengths, luminances and throughputs become colours"),
+    ("cloud blend newest|weighted|add", "what becomes of paths that cross on the screen"),
     ("cloud cue X", "how much distance dims paths (0 to 1)"),
     ("cloud dim X", "relative opacity of what the filter leaves out; 0 hides it"),
 ];
@@ -182,12 +232,15 @@ impl fmt::Display for CloudCommand {
             Self::Hidden(x) => write!(f, "hidden {x}"),
             Self::Fade(paths) => write!(f, "fade {paths}"),
             Self::Shown(paths) => write!(f, "shown {paths}"),
+            Self::Limit(paths) => write!(f, "limit {paths}"),
+            Self::Threshold(paths) => write!(f, "threshold {paths}"),
             Self::Budget(mebibytes) => write!(f, "budget {mebibytes}"),
             Self::Color(mode) => write!(f, "color {mode}"),
             Self::Ends(switch) => write!(f, "ends {switch}"),
             Self::Dots(pixels) => write!(f, "dots {pixels}"),
             Self::Marks(marks) => write!(f, "marks {marks}"),
             Self::Scale(scale) => write!(f, "scale {scale}"),
+            Self::Blend(blend) => write!(f, "blend {blend}"),
             Self::Cue(x) => write!(f, "cue {x}"),
             Self::Dim(x) => write!(f, "dim {x}"),
         }
@@ -203,11 +256,14 @@ pub(super) fn parse(words: &mut Words<'_>) -> Result<CloudCommand, CommandError>
         "hidden" => CloudCommand::Hidden(words.number("X", 0.0..=1.0)?),
         "fade" => CloudCommand::Fade(words.number("PATHS", 1.0..=1e7)?),
         "shown" => CloudCommand::Shown(words.count("PATHS", 0..=10_000_000)?),
+        "limit" => CloudCommand::Limit(words.count("PATHS", 10..=10_000_000)?),
+        "threshold" => CloudCommand::Threshold(words.count("PATHS", 0..=10_000_000)?),
         "budget" => CloudCommand::Budget(words.count("MIB", 8..=65_536)?),
         "color" => CloudCommand::Color(words.choice("MODE", &ColorMode::ALL)?),
         "ends" => CloudCommand::Ends(words.switch()?),
         "marks" => CloudCommand::Marks(words.choice("MARKS", &Marks::ALL)?),
         "scale" => CloudCommand::Scale(words.choice("SCALE", &ColorScale::ALL)?),
+        "blend" => CloudCommand::Blend(words.choice("BLEND", &Blend::ALL)?),
         "cue" => CloudCommand::Cue(words.number("X", 0.0..=1.0)?),
         "dim" => CloudCommand::Dim(words.number("X", 0.0..=1.0)?),
         "dots" => CloudCommand::Dots(words.number("PIXELS", 0.0..=20.0)?),

@@ -17,14 +17,14 @@ mod steer;
 mod words;
 
 pub use camera::{CameraCommand, Place, Side};
-pub use cloud::{CloudCommand, ColorMode, ColorScale, Marks};
+pub use cloud::{Blend, CloudCommand, ColorMode, ColorScale, Marks};
 pub use desk::{DeskCommand, Source};
 pub use filter::{FilterCommand, MOST_KEPT, MOST_SELECTORS, Sphere, kept_name, kind_name};
 pub use image::{Channel, ImageCommand, Layer, ToneCurve};
 pub use layout::{LayoutCommand, Move, PanelName, ThemeName, WindowSide};
 pub use path::{PathCommand, VertexStep};
 pub use play::PlayCommand;
-pub use scene::{ClipSide, SceneCommand, Shading};
+pub use scene::{ClipSide, Handles, Light, Lighting, SceneCommand, Shading};
 pub use words::{CommandError, Switch};
 
 use std::fmt;
@@ -152,10 +152,10 @@ mod tests {
         camera look 3 4\ncamera move 0.1 0 -0.2\ncamera fly toggle\ncamera through on\n\
         camera focus 1 2 -3 40\ncamera frame\ncamera place 1 2 -3 40 -12.5 8\ncamera view front\n\
         cloud freeze toggle\ncloud clear\ncloud width 2.5\ncloud opacity 0.5\ncloud hidden 0.1\n\
-        cloud fade 500\ncloud shown 2000\ncloud budget 64\ncloud color strategy\ncloud ends off\n\
-        cloud dots 1.5\ncloud marks ends\ncloud scale log\ncloud cue 0.5\ncloud dim 0.25\n\
+        cloud fade 500\ncloud shown 2000\ncloud limit 5000\ncloud threshold 10\ncloud budget 64\ncloud color strategy\ncloud ends off\n\
+        cloud dots 1.5\ncloud marks ends\ncloud scale log\ncloud blend add\ncloud cue 0.5\ncloud dim 0.25\n\
         scene shading wireframe\nscene opacity 0.25\nscene cutaway off\nscene camera on\n\
-        scene grid toggle\nscene clip -x\nscene cut 0.25\n\
+        scene grid toggle\nscene light at 1 -2.5 3\nscene lighting phong\nscene handles scale\nscene clip -x\nscene cut 0.25\n\
         filter set film in rect(0.25, 0, 1, 0.5)\nfilter clear\nfilter enable off\nfilter invert toggle\n\
         filter add start 1 2.5 -3 0.25\nfilter move 1 0 0 1 2\nfilter choose 0\nfilter delete 2\n\
         filter bare\nfilter keep my caustics\nfilter use on my caustics\nfilter reverse toggle my caustics\n\
@@ -198,6 +198,9 @@ mod tests {
         let texts = texts.chain(ColorMode::ALL.iter().map(|c| format!("cloud color {c}")));
         let texts = texts.chain(Marks::ALL.iter().map(|m| format!("cloud marks {m}")));
         let texts = texts.chain(ColorScale::ALL.iter().map(|s| format!("cloud scale {s}")));
+        let texts = texts.chain(Blend::ALL.iter().map(|b| format!("cloud blend {b}")));
+        let texts = texts.chain(["scene light camera".into(), "scene lighting soft".into()]);
+        let texts = texts.chain(["scene handles move".into()]);
         let texts = texts.chain(ClipSide::ALL.iter().map(|s| format!("scene clip {s}")));
         let texts = texts.chain(Shading::ALL.iter().map(|s| format!("scene shading {s}")));
         let texts = texts.chain(Layer::ALL.iter().map(|l| format!("image show {l}")));

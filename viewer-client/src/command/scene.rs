@@ -18,6 +18,12 @@ pub enum SceneCommand {
     Camera(Switch),
     /// The grid on the ground.
     Grid(Switch),
+    /// The light that surfaces are seen by.
+    Light(Light),
+    /// How surfaces answer it.
+    Lighting(Lighting),
+    /// What the handles of selectors do.
+    Handles(Handles),
     /// Cuts away what lies on one side of a plane.
     Clip(ClipSide),
     /// Where the plane lies, from 0 to 1 across the scene.
@@ -77,12 +83,83 @@ impl fmt::Display for ClipSide {
     }
 }
 
+/// Where the light of the preview is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Light {
+    /// At the eye, wherever that goes.
+    #[default]
+    Camera,
+    /// At a point, in the file's units.
+    At([f64; 3]),
+}
+
+impl fmt::Display for Light {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Camera => f.write_str("camera"),
+            Self::At([x, y, z]) => write!(f, "at {x} {y} {z}"),
+        }
+    }
+}
+
+/// How surfaces answer the light of the preview.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Lighting {
+    /// With a soft sky, so that nothing is black.
+    #[default]
+    Soft,
+    /// By Phong's model, with the numbers of the Lvis of 2014.
+    Phong,
+}
+
+impl Lighting {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Soft, Self::Phong];
+}
+
+impl fmt::Display for Lighting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Soft => "soft",
+            Self::Phong => "phong",
+        })
+    }
+}
+
+/// What the handles of selectors do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Handles {
+    /// They move along an axis.
+    #[default]
+    Move,
+    /// They scale.
+    Scale,
+}
+
+impl Handles {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Move, Self::Scale];
+}
+
+impl fmt::Display for Handles {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Move => "move",
+            Self::Scale => "scale",
+        })
+    }
+}
+
 /// How surfaces are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shading {
-    /// Lit by a headlight.
+    /// Lit, with their textures.
     #[default]
     Shaded,
+    /// Lit, each in one colour.
+    Plain,
+    /// Their textures and colours alone, without light.
+    Texture,
     /// Lit, with the edges of triangles.
     Edges,
     /// Edges of triangles only.
@@ -93,13 +170,16 @@ pub enum Shading {
 
 impl Shading {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Shaded, Self::Edges, Self::Wireframe, Self::Off];
+    pub const ALL: [Self; 6] =
+        [Self::Shaded, Self::Plain, Self::Texture, Self::Edges, Self::Wireframe, Self::Off];
 }
 
 impl fmt::Display for Shading {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Shaded => "shaded",
+            Self::Plain => "plain",
+            Self::Texture => "texture",
             Self::Edges => "edges",
             Self::Wireframe => "wireframe",
             Self::Off => "off",
@@ -108,11 +188,14 @@ impl fmt::Display for Shading {
 }
 
 pub(super) const FORMS: &[Form] = &[
-    ("scene shading shaded|edges|wireframe|off", "how surfaces are drawn"),
+    ("scene shading shaded|plain|texture|edges|wireframe|off", "how surfaces are drawn"),
     ("scene opacity X", "opacity of all surfaces (0 to 1)"),
     ("scene cutaway on|off|toggle", "look through surfaces from behind"),
     ("scene camera on|off|toggle", "the model of the render camera"),
     ("scene grid on|off|toggle", "the grid on the ground"),
+    ("scene light camera|at X Y Z", "the light of the preview, in the file's units"),
+    ("scene lighting soft|phong", "how surfaces answer the light of the preview"),
+    ("scene handles move|scale", "what the handles of selectors do"),
     ("scene clip off|x|-x|y|-y|z|-z", "cut away what lies before a plane along an axis"),
     ("scene cut X", "where the plane lies across the scene (0 to 1)"),
 ];
@@ -125,6 +208,9 @@ impl fmt::Display for SceneCommand {
             Self::Cutaway(switch) => write!(f, "cutaway {switch}"),
             Self::Camera(switch) => write!(f, "camera {switch}"),
             Self::Grid(switch) => write!(f, "grid {switch}"),
+            Self::Light(light) => write!(f, "light {light}"),
+            Self::Lighting(lighting) => write!(f, "lighting {lighting}"),
+            Self::Handles(handles) => write!(f, "handles {handles}"),
             Self::Clip(side) => write!(f, "clip {side}"),
             Self::Cut(place) => write!(f, "cut {place}"),
         }
@@ -138,8 +224,23 @@ pub(super) fn parse(words: &mut Words<'_>) -> Result<SceneCommand, CommandError>
         "cutaway" => SceneCommand::Cutaway(words.switch()?),
         "camera" => SceneCommand::Camera(words.switch()?),
         "grid" => SceneCommand::Grid(words.switch()?),
+        "light" => SceneCommand::Light(light(words)?),
+        "lighting" => SceneCommand::Lighting(words.choice("LIGHTING", &Lighting::ALL)?),
+        "handles" => SceneCommand::Handles(words.choice("HANDLES", &Handles::ALL)?),
         "clip" => SceneCommand::Clip(words.choice("SIDE", &ClipSide::ALL)?),
         "cut" => SceneCommand::Cut(words.number("X", 0.0..=1.0)?),
         other => return Err(CommandError::Unknown(format!("scene {other}"))),
     })
+}
+
+fn light(words: &mut Words<'_>) -> Result<Light, CommandError> {
+    const FAR: f64 = 1e12;
+    match words.next("light's place")? {
+        "camera" => Ok(Light::Camera),
+        "at" => {
+            let mut axis = |name| words.within(name, -FAR..=FAR);
+            Ok(Light::At([axis("X")?, axis("Y")?, axis("Z")?]))
+        }
+        other => Err(CommandError::Unknown(format!("scene light {other}"))),
+    }
 }

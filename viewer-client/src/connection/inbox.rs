@@ -194,12 +194,35 @@ fn size(news: &FocusNews) -> usize {
 #[derive(Debug, Default)]
 pub struct Inbox {
     held: Mutex<Delivery>,
+    /// The statistics of this session that came last.
+    told: Mutex<Option<Statistics>>,
 }
 
 impl Inbox {
-    /// Puts in what the tracer said.
-    pub fn push(&self, event: TracerEvent) {
+    /// Puts in what the tracer said. False where that is nothing to show: a daemon whose chains rest
+    /// says the same again and again.
+    pub fn push(&self, event: TracerEvent) -> bool {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        match &event {
+            TracerEvent::SnapshotEnd | TracerEvent::Goodbye(_) | TracerEvent::Unknown => {
+                return false;
+            }
+            TracerEvent::Welcome(_) => *told = None,
+            TracerEvent::Statistics(new) => {
+                // Memory wavers by itself.
+                let same = |old: &Statistics| {
+                    Statistics { memory_bytes: old.memory_bytes, ..new.clone() } == *old
+                };
+                if told.as_ref().is_some_and(same) {
+                    return false;
+                }
+                *told = Some(new.clone());
+            }
+            _ => {}
+        }
+        drop(told);
         self.edit(|held| held.push(event));
+        true
     }
 
     /// Puts in a scene.
@@ -215,6 +238,11 @@ impl Inbox {
     /// Puts in how the connection is.
     pub fn push_state(&self, state: LinkState) {
         self.edit(|held| held.state = Some(state));
+    }
+
+    /// True when anything is in it.
+    pub fn has_news(&self) -> bool {
+        self.edit(|held| !held.is_empty())
     }
 
     /// Takes everything out.
@@ -288,6 +316,20 @@ mod tests {
         inbox.push(TracerEvent::Film(tile(0, 32, 8)));
         inbox.push(TracerEvent::Film(tile(32, 32, 16)));
         assert_eq!(inbox.take().film.len(), 1, "a film of another size replaces the first");
+    }
+
+    #[test]
+    fn what_was_said_before_is_no_news() {
+        let inbox = Inbox::default();
+        let said = |seconds: f64, memory_bytes| {
+            let statistics =
+                Statistics { elapsed_seconds: seconds, memory_bytes, ..Statistics::default() };
+            inbox.push(TracerEvent::Statistics(statistics))
+        };
+        assert_eq!([said(1.0, 5), said(1.0, 7), said(2.0, 7)], [true, false, true], "as they come");
+        assert!(!inbox.push(TracerEvent::Unknown), "nothing that is known");
+        assert_eq!(inbox.take().statistics.map(|s| s.elapsed_seconds), Some(2.0), "the newest");
+        assert!(!inbox.has_news(), "taken");
     }
 
     #[test]

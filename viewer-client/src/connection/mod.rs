@@ -33,8 +33,29 @@ const OUTBOX: usize = 64;
 /// The daemon is asked this often how long it takes to answer.
 const QUESTION: Duration = Duration::from_secs(2);
 
-/// Called whenever something new lies in the inbox.
-pub type Waker = Box<dyn Fn() + Send + Sync>;
+/// How soon news wants to be seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Haste {
+    /// Somebody waits for it.
+    Now,
+    /// More of what comes all the time: paths, the image, counts.
+    Whenever,
+}
+
+impl Haste {
+    fn of(event: &TracerEvent) -> Self {
+        match event {
+            TracerEvent::Paths(_)
+            | TracerEvent::Film(_)
+            | TracerEvent::Statistics(_)
+            | TracerEvent::Gap(_) => Self::Whenever,
+            _ => Self::Now,
+        }
+    }
+}
+
+/// Called, from the connection's thread, whenever something has come.
+pub type Waker = Box<dyn Fn(Haste) + Send + Sync>;
 
 /// A connection that mends itself. Dropping it says goodbye and waits for its thread.
 pub struct Link {
@@ -84,6 +105,11 @@ impl Link {
     /// Where the daemon should be.
     pub fn address(&self) -> &str {
         &self.peer.address
+    }
+
+    /// True when something came that is not taken yet.
+    pub fn has_news(&self) -> bool {
+        self.inbox.has_news()
     }
 
     /// Takes everything that came.
@@ -219,7 +245,7 @@ impl Keeper {
                 Some(answered) = asking.join_next() => {
                     if let Ok(Ok(latency)) = answered {
                         self.inbox.push_latency(latency);
-                        (self.waker)();
+                        (self.waker)(Haste::Whenever);
                     }
                 }
                 Some(event) = self.orders.recv() => {
@@ -237,8 +263,10 @@ impl Keeper {
                             fetching.spawn(fetch);
                             self.set_state(LinkState::Connected);
                         }
-                        self.inbox.push(event);
-                        (self.waker)();
+                        let haste = Haste::of(&event);
+                        if self.inbox.push(event) {
+                            (self.waker)(haste);
+                        }
                     }
                     Err(error) => return Some(error),
                 },
@@ -250,11 +278,11 @@ impl Keeper {
         let Some(scene) = scene else { return };
         self.held_hash.clone_from(&scene.hash);
         self.inbox.push_scene(scene);
-        (self.waker)();
+        (self.waker)(Haste::Now);
     }
 
     fn set_state(&self, state: LinkState) {
         self.inbox.push_state(state);
-        (self.waker)();
+        (self.waker)(Haste::Now);
     }
 }

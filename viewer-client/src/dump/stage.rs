@@ -105,6 +105,7 @@ impl Stage {
                 color: Rgb::grey(0.5),
                 emission: Rgb::BLACK,
                 transparent: false,
+                texture: None,
             });
             materials.len() - 1
         });

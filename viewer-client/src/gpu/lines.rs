@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use shaders::{LINES, LinePoint};
 use wgpu::util::DeviceExt as _;
 
-use super::pipeline::{FrameGroup, Recipe, attributes, module};
+use super::pipeline::{FrameGroup, Ink, Recipe, attributes, module};
+use super::progress::Crossing;
 
 const STRIDE: u64 = size_of::<LinePoint>() as u64;
 
@@ -48,12 +49,21 @@ impl LinePage {
     }
 }
 
-/// All polylines and their pipelines.
+/// One pipeline a layer.
 #[derive(Debug)]
-pub(super) struct Lines {
+struct Pipelines {
     visible: wgpu::RenderPipeline,
     hidden: wgpu::RenderPipeline,
     dots: wgpu::RenderPipeline,
+}
+
+/// All polylines and their pipelines.
+#[derive(Debug)]
+pub(super) struct Lines {
+    /// The newest on top.
+    stacked: Pipelines,
+    /// In any order.
+    weighed: Pipelines,
     pages: BTreeMap<u64, LinePage>,
     /// Buffers of pages that are gone, for the next ones.
     spare: Vec<wgpu::Buffer>,
@@ -75,23 +85,28 @@ impl Lines {
             })
         };
         let buffers = [layout(&a), layout(&b)];
-        let build = |label, vertex, depth| {
+        let build = |label, vertex, depth, (ink, fragment)| {
             let recipe = Recipe {
                 label,
                 module: &module,
                 vertex,
-                fragment: "fs_stroke",
+                fragment,
                 buffers: &buffers,
                 topology: wgpu::PrimitiveTopology::TriangleStrip,
                 depth,
-                opaque: false,
+                ink,
+                extra: None,
             };
             recipe.build(device, frame)
         };
+        let pipelines = |ink| Pipelines {
+            visible: build("lines", "vs_line", wgpu::CompareFunction::GreaterEqual, ink),
+            hidden: build("hidden lines", "vs_line_hidden", wgpu::CompareFunction::Less, ink),
+            dots: build("dots", "vs_dot", wgpu::CompareFunction::GreaterEqual, ink),
+        };
         Self {
-            visible: build("lines", "vs_line", wgpu::CompareFunction::GreaterEqual),
-            hidden: build("hidden lines", "vs_line_hidden", wgpu::CompareFunction::Less),
-            dots: build("dots", "vs_dot", wgpu::CompareFunction::GreaterEqual),
+            stacked: pipelines((Ink::Over, "fs_stroke")),
+            weighed: pipelines((Ink::Weighed, "fs_weighed")),
             pages: BTreeMap::new(),
             spare: Vec::new(),
             page_points,
@@ -167,7 +182,7 @@ impl Lines {
 
     pub(super) fn draw_aids(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Some(aids) = &self.aids else { return };
-        pass.set_pipeline(&self.visible);
+        pass.set_pipeline(&self.stacked.visible);
         let points = aids.bind(pass, 0);
         pass.draw(0..4, 0..points.saturating_sub(1));
     }
@@ -178,12 +193,17 @@ impl Lines {
         pass: &mut wgpu::RenderPass<'_>,
         range: PageRange,
         layer: Layer,
+        crossing: Crossing,
     ) -> usize {
         let Some(page) = self.pages.get(&range.serial) else { return 0 };
+        let pipelines = match crossing {
+            Crossing::Stacked => &self.stacked,
+            Crossing::Weighed => &self.weighed,
+        };
         let (pipeline, less) = match layer {
-            Layer::Hidden => (&self.hidden, 1),
-            Layer::Visible => (&self.visible, 1),
-            Layer::Dots => (&self.dots, 0),
+            Layer::Hidden => (&pipelines.hidden, 1),
+            Layer::Visible => (&pipelines.visible, 1),
+            Layer::Dots => (&pipelines.dots, 0),
         };
         let points = page.bind(pass, range.first);
         if points > less {

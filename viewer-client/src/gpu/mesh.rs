@@ -1,11 +1,13 @@
 //! Surfaces, in pages of whole triangles.
 
+use common::TexturePreview;
 use shaders::{MESH, MeshVertex};
 use wgpu::util::DeviceExt as _;
 
-use super::pipeline::{FrameGroup, Recipe, attributes, module};
+use super::pipeline::{FrameGroup, Ink, Recipe, attributes, module};
+use super::textures::Textures;
 
-/// Corners a page holds: 24 MiB, well below what any device allows for one buffer.
+/// Corners a page holds: 32 MiB, well below what any device allows for one buffer.
 const PAGE_CORNERS: usize = 3 * 350_000;
 
 /// All surfaces and their pipelines.
@@ -13,11 +15,13 @@ const PAGE_CORNERS: usize = 3 * 350_000;
 pub(super) struct Mesh {
     opaque: wgpu::RenderPipeline,
     translucent: wgpu::RenderPipeline,
+    textures: Textures,
     pages: Vec<(wgpu::Buffer, u32)>,
 }
 
 impl Mesh {
-    pub(super) fn new(device: &wgpu::Device, frame: &FrameGroup) -> Self {
+    pub(super) fn new(device: &wgpu::Device, queue: &wgpu::Queue, frame: &FrameGroup) -> Self {
+        let textures = Textures::new(device, queue);
         let module = module(device, MESH);
         let attributes = attributes(&MeshVertex::ATTRIBUTES, 0);
         let buffers = [Some(wgpu::VertexBufferLayout {
@@ -25,7 +29,7 @@ impl Mesh {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &attributes,
         })];
-        let build = |label, fragment, opaque| {
+        let build = |label, fragment, ink| {
             let recipe = Recipe {
                 label,
                 module: &module,
@@ -34,14 +38,16 @@ impl Mesh {
                 buffers: &buffers,
                 topology: wgpu::PrimitiveTopology::TriangleList,
                 depth: wgpu::CompareFunction::GreaterEqual,
-                opaque,
+                ink,
+                extra: Some(&textures.layout),
             };
             recipe.build(device, frame)
         };
         Self {
-            opaque: build("opaque surfaces", "fs_opaque", true),
-            translucent: build("translucent surfaces", "fs_translucent", false),
+            opaque: build("opaque surfaces", "fs_opaque", Ink::Opaque),
+            translucent: build("translucent surfaces", "fs_translucent", Ink::Over),
             pages: Vec::new(),
+            textures,
         }
     }
 
@@ -60,6 +66,16 @@ impl Mesh {
             .collect();
     }
 
+    /// Replaces all textures.
+    pub(super) fn set_textures(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        list: &[TexturePreview],
+    ) {
+        self.textures.set(device, queue, list);
+    }
+
     /// Bytes on the graphics card.
     pub(super) fn byte_len(&self) -> u64 {
         self.pages.iter().map(|(buffer, _)| buffer.size()).sum()
@@ -75,6 +91,7 @@ impl Mesh {
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline) {
         pass.set_pipeline(pipeline);
+        pass.set_bind_group(1, &self.textures.group, &[]);
         for (buffer, corners) in &self.pages {
             pass.set_vertex_buffer(0, buffer.slice(..));
             pass.draw(0..*corners, 0..1);

@@ -4,6 +4,7 @@
 //! it knows neither the store nor the settings they come from. The picture is drawn into textures of
 //! its own, only when it changed, and copied into the window with every frame of the interface.
 
+mod blend;
 mod composite;
 mod lines;
 mod mesh;
@@ -11,7 +12,8 @@ mod pipeline;
 mod progress;
 mod renderer;
 mod target;
+mod textures;
 
 pub use lines::{PageRange, Uploaded};
-pub use progress::Picture;
+pub use progress::{Crossing, Picture};
 pub use renderer::{Quality, Renderer, ViewportCallback};

@@ -3,7 +3,7 @@
 use shaders::{Attribute, AttributeFormat, FrameUniforms, Shader};
 use wgpu::util::DeviceExt as _;
 
-use super::target::{COLOR_FORMAT, DEPTH_FORMAT};
+use super::target::{COLOR_FORMAT, DEPTH_FORMAT, WEIGHT_FORMAT};
 
 /// The uniforms of a picture, in group 0 of every pipeline.
 #[derive(Debug)]
@@ -60,6 +60,7 @@ pub(super) fn module(device: &wgpu::Device, shader: Shader) -> wgpu::ShaderModul
 /// How a struct of the shaders crate is read, from `location` on.
 pub(super) fn attributes(list: &[Attribute], location: u32) -> Vec<wgpu::VertexAttribute> {
     let format = |format| match format {
+        AttributeFormat::Float32x2 => wgpu::VertexFormat::Float32x2,
         AttributeFormat::Float32x3 => wgpu::VertexFormat::Float32x3,
         AttributeFormat::Unorm8x4 => wgpu::VertexFormat::Unorm8x4,
         AttributeFormat::Snorm16x4 => wgpu::VertexFormat::Snorm16x4,
@@ -87,18 +88,65 @@ pub(super) struct Recipe<'a> {
     pub(super) topology: wgpu::PrimitiveTopology,
     /// Depth is reversed: `Greater` lets pass what is nearer.
     pub(super) depth: wgpu::CompareFunction,
-    /// Opaque things write depth and replace colour; others blend.
-    pub(super) opaque: bool,
+    /// What becomes of the colour that is there.
+    pub(super) ink: Ink,
+    /// What it reads besides the uniforms, in group 1.
+    pub(super) extra: Option<&'a wgpu::BindGroupLayout>,
+}
+
+/// What becomes of the colour that is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ink {
+    /// It is replaced, and so is the depth.
+    Opaque,
+    /// It is covered as far as the new one is opaque.
+    Over,
+    /// Sums of weighted colours, and of weights, into targets of their own.
+    Weighed,
+}
+
+impl Ink {
+    /// Products of what shines through, beside sums: the same for both targets, since WebGL 2 has
+    /// one blending for all.
+    const WEIGHED: wgpu::BlendState = wgpu::BlendState {
+        color: wgpu::BlendComponent {
+            src_factor: wgpu::BlendFactor::One,
+            dst_factor: wgpu::BlendFactor::One,
+            operation: wgpu::BlendOperation::Add,
+        },
+        alpha: wgpu::BlendComponent {
+            src_factor: wgpu::BlendFactor::Zero,
+            dst_factor: wgpu::BlendFactor::OneMinusSrcAlpha,
+            operation: wgpu::BlendOperation::Add,
+        },
+    };
+
+    fn targets(self) -> Vec<Option<wgpu::ColorTargetState>> {
+        let over = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
+        let write_mask = wgpu::ColorWrites::ALL;
+        let target = |format, blend| Some(wgpu::ColorTargetState { format, blend, write_mask });
+        match self {
+            Self::Opaque => vec![target(COLOR_FORMAT, None)],
+            Self::Over => vec![target(COLOR_FORMAT, Some(over))],
+            Self::Weighed => vec![
+                target(COLOR_FORMAT, Some(Self::WEIGHED)),
+                target(WEIGHT_FORMAT, Some(Self::WEIGHED)),
+            ],
+        }
+    }
 }
 
 impl Recipe<'_> {
     pub(super) fn build(&self, device: &wgpu::Device, frame: &FrameGroup) -> wgpu::RenderPipeline {
+        let both = [Some(&frame.layout), self.extra];
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(self.label),
-            bind_group_layouts: &[Some(&frame.layout)],
+            bind_group_layouts: match &self.extra {
+                Some(_) => &both,
+                None => &both[..1],
+            },
             immediate_size: 0,
         });
-        let blend = (!self.opaque).then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(self.label),
             layout: Some(&layout),
@@ -114,7 +162,7 @@ impl Recipe<'_> {
             },
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: DEPTH_FORMAT,
-                depth_write_enabled: Some(self.opaque),
+                depth_write_enabled: Some(self.ink == Ink::Opaque),
                 depth_compare: Some(self.depth),
                 stencil: wgpu::StencilState::default(),
                 bias: wgpu::DepthBiasState::default(),
@@ -127,11 +175,7 @@ impl Recipe<'_> {
                 module: self.module,
                 entry_point: Some(self.fragment),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(wgpu::ColorTargetState {
-                    format: COLOR_FORMAT,
-                    blend,
-                    write_mask: wgpu::ColorWrites::ALL,
-                })],
+                targets: &self.ink.targets(),
             }),
             multiview_mask: None,
             cache: None,

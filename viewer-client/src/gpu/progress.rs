@@ -9,6 +9,15 @@ use shaders::FrameUniforms;
 
 use super::lines::{Layer, Lines, PageRange};
 
+/// What becomes of paths that cross.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Crossing {
+    /// They lie on each other, the newest on top.
+    Stacked,
+    /// They are weighed against each other, whatever their order.
+    Weighed,
+}
+
 /// What to draw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
@@ -22,6 +31,8 @@ pub struct Picture {
     pub surfaces: bool,
     /// The lines of paths are drawn, rather than their dots alone.
     pub lines: bool,
+    /// What becomes of paths that cross.
+    pub crossing: Crossing,
 }
 
 impl Picture {
@@ -38,6 +49,7 @@ impl Picture {
         self.size == other.size
             && self.surfaces == other.surfaces
             && self.lines == other.lines
+            && self.crossing == other.crossing
             && view(self) == view(other)
     }
 

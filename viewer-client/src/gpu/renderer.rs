@@ -2,14 +2,16 @@
 
 use std::time::Instant;
 
+use common::TexturePreview;
 use egui_wgpu::{CallbackResources, CallbackTrait, ScreenDescriptor};
 use shaders::{LinePoint, MeshVertex};
 
+use super::blend::Blend;
 use super::composite::Composite;
 use super::lines::{Layer, Lines, PageRange, Uploaded};
 use super::mesh::Mesh;
 use super::pipeline::FrameGroup;
-use super::progress::{Allowance, Picture};
+use super::progress::{Allowance, Crossing, Picture};
 use super::target::{Part, Target};
 
 /// How well to draw.
@@ -29,6 +31,7 @@ pub struct Renderer {
     frame: FrameGroup,
     mesh: Mesh,
     lines: Lines,
+    blend: Blend,
     composite: Composite,
     /// What the window shows.
     shown: Option<Shown>,
@@ -76,7 +79,8 @@ impl Renderer {
         };
         let frame = FrameGroup::new(&device, samples);
         Self {
-            mesh: Mesh::new(&device, &frame),
+            mesh: Mesh::new(&device, &queue, &frame),
+            blend: Blend::new(&device, &frame),
             lines: Lines::new(&device, &frame, page_points),
             composite: Composite::new(&device, &frame, format),
             frame,
@@ -90,9 +94,10 @@ impl Renderer {
         }
     }
 
-    /// Replaces all surfaces.
-    pub fn set_mesh(&mut self, corners: &[MeshVertex]) {
+    /// Replaces all surfaces and their textures.
+    pub fn set_mesh(&mut self, corners: &[MeshVertex], textures: &[TexturePreview]) {
         self.mesh.set(&self.device, corners);
+        self.mesh.set_textures(&self.device, &self.queue, textures);
         self.content += 1;
     }
 
@@ -172,19 +177,16 @@ impl Renderer {
         picture: &Picture,
         whole: bool,
     ) {
-        let target = match self.shown.take() {
-            Some(shown) if shown.picture.size == picture.size => shown.target,
-            _ => self.new_target(picture.size),
+        let fits = |shown: &Shown| {
+            shown.picture.size == picture.size && shown.picture.crossing == picture.crossing
         };
-        self.composite.set_picture(&self.device, &target.resolved);
+        let target = match self.shown.take() {
+            Some(shown) if fits(&shown) => shown.target,
+            _ => self.new_target(picture),
+        };
+        self.composite.set_picture(&self.device, target.resolved());
         self.frame.write(&self.queue, &drawn.uniforms);
-        let mut pass = target.begin(encoder, Part { first: true, last: true });
-        self.begin(&mut pass, drawn);
-        for (layer, range) in drawn.steps() {
-            self.lines.draw_page(&mut pass, range, layer);
-        }
-        self.end(&mut pass, drawn);
-        drop(pass);
+        self.draw(encoder, (&target, drawn), &drawn.steps(), Part { first: true, last: true });
         let (picture, content) = (picture.clone(), self.content);
         self.shown = Some(Shown { target, picture, content, whole });
     }
@@ -194,7 +196,7 @@ impl Renderer {
     fn go_on(&mut self, encoder: &mut wgpu::CommandEncoder, wanted: &Picture) {
         let coming = self.coming.take().filter(|coming| coming.picture.same_view(wanted));
         let mut coming = coming.unwrap_or_else(|| Coming {
-            target: self.new_target(wanted.size),
+            target: self.new_target(wanted),
             picture: wanted.clone(),
             content: self.content,
             steps: wanted.steps(),
@@ -208,35 +210,73 @@ impl Renderer {
             end += 1;
         }
         let part = Part { first: coming.next == 0, last: end == coming.steps.len() };
-        let mut pass = coming.target.begin(encoder, part);
-        if part.first {
-            self.begin(&mut pass, &coming.picture);
-        }
-        pass.set_bind_group(0, &self.frame.group, &[]);
-        for (layer, range) in coming.steps.get(coming.next..end).unwrap_or_default() {
-            self.lines.draw_page(&mut pass, *range, *layer);
-        }
-        if part.last {
-            self.end(&mut pass, &coming.picture);
-        }
-        drop(pass);
+        let steps = coming.steps.get(coming.next..end).unwrap_or_default();
+        self.draw(encoder, (&coming.target, &coming.picture), steps, part);
         coming.next = end;
         if part.last {
             let Coming { target, picture, content, .. } = coming;
-            self.composite.set_picture(&self.device, &target.resolved);
+            self.composite.set_picture(&self.device, target.resolved());
             self.shown = Some(Shown { target, picture, content, whole: true });
         } else {
             self.coming = Some(coming);
         }
     }
 
-    fn new_target(&self, size: [u32; 2]) -> Target {
-        Target::new(&self.device, size, self.frame.samples)
+    fn new_target(&self, picture: &Picture) -> Target {
+        Target::new(&self.device, picture.size, self.frame.samples, picture.crossing)
+    }
+
+    /// Draws a part of a picture: what lies under the paths, these steps of the paths, and what lies
+    /// over them.
+    fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        (target, picture): (&Target, &Picture),
+        steps: &[(Layer, PageRange)],
+        part: Part,
+    ) {
+        let Some(sums) = target.sums() else {
+            let mut pass = target.begin(encoder, part);
+            pass.set_bind_group(0, &self.frame.group, &[]);
+            if part.first {
+                self.begin(&mut pass, picture);
+            }
+            self.draw_steps(&mut pass, steps, Crossing::Stacked);
+            if part.last {
+                self.end(&mut pass, picture);
+            }
+            return;
+        };
+        if part.first {
+            let mut pass = target.begin(encoder, Part { last: false, ..part });
+            pass.set_bind_group(0, &self.frame.group, &[]);
+            self.begin(&mut pass, picture);
+        }
+        let mut pass = target.begin_sums(encoder, sums, part);
+        pass.set_bind_group(0, &self.frame.group, &[]);
+        self.draw_steps(&mut pass, steps, Crossing::Weighed);
+        drop(pass);
+        if part.last {
+            let mut pass = target.begin(encoder, Part { first: false, ..part });
+            pass.set_bind_group(0, &self.frame.group, &[]);
+            self.blend.draw(&self.device, &mut pass, sums);
+            self.end(&mut pass, picture);
+        }
+    }
+
+    fn draw_steps(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        steps: &[(Layer, PageRange)],
+        crossing: Crossing,
+    ) {
+        for (layer, range) in steps {
+            self.lines.draw_page(pass, *range, *layer, crossing);
+        }
     }
 
     /// What lies under the paths.
     fn begin(&self, pass: &mut wgpu::RenderPass<'_>, picture: &Picture) {
-        pass.set_bind_group(0, &self.frame.group, &[]);
         if picture.surfaces {
             self.mesh.draw_opaque(pass);
         }

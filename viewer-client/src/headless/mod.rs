@@ -37,7 +37,7 @@ pub fn run(
 ) -> anyhow::Result<()> {
     let mut stage = Stage::new(size)?;
     if let Some(peer) = peer {
-        let waker: Waker = Box::new(|| {});
+        let waker: Waker = Box::new(|_| {});
         viewer.set_link(Link::start(peer, waker)?);
         wait_for(&mut viewer, wait)?;
     }
@@ -99,6 +99,8 @@ pub struct Stage {
     size: [u32; 2],
     target: wgpu::Texture,
     time: f64,
+    /// When the interface wants another frame by itself.
+    due: Option<Instant>,
 }
 
 impl std::fmt::Debug for Stage {
@@ -137,7 +139,7 @@ impl Stage {
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
-        Ok(Self { ctx, gpu, size, target, time: 0.0 })
+        Ok(Self { ctx, gpu, size, target, time: 0.0, due: None })
     }
 
     /// Draws until nothing is left to upload and nothing moves, and reads the picture back.
@@ -160,7 +162,12 @@ impl Stage {
     /// One frame of the interface.
     pub fn frame(&mut self, viewer: &mut Viewer) -> anyhow::Result<FrameCost> {
         let started = Instant::now();
-        while viewer.upload(&self.gpu) {}
+        while viewer.upload(&self.gpu) {
+            // What was written waits in memory until it is submitted.
+            self.gpu.queue.submit([]);
+            let done = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
+            done.context("the graphics driver gave up")?;
+        }
         let pixels = egui::vec2(self.size[0] as f32, self.size[1] as f32);
         let screen = pixels / self.ctx.zoom_factor();
         let input = egui::RawInput {
@@ -171,6 +178,8 @@ impl Stage {
         // Half a second a frame: animations are over after a few frames.
         self.time += 0.5;
         let mut output = self.ctx.run_ui(input, |ui| viewer.ui(ui));
+        let root = output.viewport_output.get(&egui::ViewportId::ROOT);
+        self.due = root.and_then(|root| started.checked_add(root.repaint_delay));
         let primitives = self.ctx.tessellate(output.shapes, output.pixels_per_point);
         let commands =
             self.encode(&primitives, &mut output.textures_delta, output.pixels_per_point);
@@ -181,6 +190,21 @@ impl Stage {
         let cost = FrameCost { cpu, wall: started.elapsed() };
         tracing::debug!("a frame took {:.0} ms", 1e3 * cost.wall.as_secs_f64());
         Ok(cost)
+    }
+
+    /// Lets `time` go by as a window does where nobody touches it: frames are drawn only when
+    /// something has come, or when the interface wants one. Answers how many that were.
+    pub fn rest(&mut self, viewer: &mut Viewer, time: Duration) -> anyhow::Result<u32> {
+        let end = Instant::now() + time;
+        let mut frames = 0;
+        while Instant::now() < end {
+            if viewer.receive() || self.due.is_some_and(|due| due <= Instant::now()) {
+                self.frame(viewer)?;
+                frames += 1;
+            }
+            std::thread::sleep(LOOK);
+        }
+        Ok(frames)
     }
 
     fn encode(
@@ -266,5 +290,7 @@ impl Stage {
     }
 }
 
+#[cfg(test)]
+mod look_tests;
 #[cfg(test)]
 mod tests;

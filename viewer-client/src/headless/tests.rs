@@ -3,17 +3,18 @@
 use image::{Rgba, RgbaImage};
 
 use super::*;
+use crate::connection::Delivery;
 use crate::status::Status;
 use crate::synthetic::delivery;
 
-const SIZE: [u32; 2] = [1280, 720];
+pub(super) const SIZE: [u32; 2] = [1280, 720];
 
 /// A path that crosses the view, level, at the height of 150 units; far and near of the middle.
 const FAR: &[[f32; 3]] = &[[-400.0, 150.0, -400.0], [400.0, 150.0, -400.0]];
 const NEAR: &[[f32; 3]] = &[[-400.0, 150.0, 400.0], [400.0, 150.0, 400.0]];
 
 #[expect(clippy::print_stderr, reason = "a test that was skipped must not look as if it had run")]
-fn stage() -> Option<Stage> {
+pub(super) fn stage() -> Option<Stage> {
     Stage::new(SIZE)
         .inspect_err(|error| eprintln!("skipped, because nothing can draw here: {error:#}"))
         .ok()
@@ -21,21 +22,32 @@ fn stage() -> Option<Stage> {
 
 /// The window after these commands, with these paths.
 fn picture(stage: &mut Stage, paths: &[&[[f32; 3]]], commands: &[&str]) -> RgbaImage {
+    picture_of(stage, delivery(paths), commands)
+}
+
+/// The window after these commands, when this has come.
+pub(super) fn picture_of(stage: &mut Stage, delivery: Delivery, commands: &[&str]) -> RgbaImage {
     let mut viewer = Viewer::new(Status::new("127.0.0.1:50061".to_owned(), false));
-    viewer.take(delivery(paths));
+    // A filter that stands when the paths come does not wait for the user's hand to rest.
+    let (filter, commands): (Vec<&str>, Vec<&str>) =
+        commands.iter().partition(|command| command.starts_with("filter"));
+    for command in filter {
+        viewer.apply(command.parse().expect(command));
+    }
+    viewer.take(delivery);
     viewer.receive();
     let fixed = ["camera view front", "scene grid off", "scene camera off", "cloud ends off"];
-    for command in fixed.iter().chain(commands) {
+    for command in fixed.into_iter().chain(commands) {
         viewer.apply(command.parse().expect(command));
     }
     stage.settled(&mut viewer).expect("a picture")
 }
 
 /// A column of the viewport, left of where the paths meet at the camera.
-const COLUMN: u32 = 520;
+pub(super) const COLUMN: u32 = 520;
 
 /// Rows of the column in which two pictures differ visibly.
-fn rows_that_differ(a: &RgbaImage, b: &RgbaImage) -> Vec<u32> {
+pub(super) fn rows_that_differ(a: &RgbaImage, b: &RgbaImage) -> Vec<u32> {
     let differs = |p: &Rgba<u8>, q: &Rgba<u8>| (0..3).any(|c| p[c].abs_diff(q[c]) > 24);
     // The upper bar and the captions below it are left out.
     (70..SIZE[1] - 60)

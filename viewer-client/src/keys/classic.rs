@@ -1,21 +1,21 @@
 //! The keys of the Lvis of 2014, for hands that know them.
 //!
-//! Where a key of today is not among them, it keeps its meaning. Three have no counterpart: `A`
-//! switched the handles of a selector between moving and scaling, which are both there now, and F5
-//! and F6 changed how many paths had to wait before they were filtered, which now happens at once.
+//! Where a key of today is not among them, it keeps its meaning.
 
 use common::ExplorerCommand;
 use egui::Key;
 
-use super::{Binding, Group, after, bind, explore, plain, play_or_pause, seed};
+use super::{Binding, Group, after, bind, explore, handles, plain, play_or_pause, seed};
 use crate::command::{
     CameraCommand, CloudCommand, Command, FilterCommand, SceneCommand, Shading, Switch,
 };
 
 /// How far a key press moves the eye, in sizes of the scene.
 const STEP: f32 = 0.02;
-/// Paths, and MiB, that a key press adds or takes away.
+/// Paths that a key press adds or takes away.
 const TEN: u32 = 10;
+/// The most paths that a limit may let through.
+const MOST: u32 = 10_000_000;
 
 /// The bindings that differ from today's.
 pub(super) const BINDINGS: &[Binding] = &[
@@ -35,18 +35,24 @@ pub(super) const BINDINGS: &[Binding] = &[
     bind(plain(Key::Home), Group::Paths, "delete all selectors", |_| {
         Command::Filter(FilterCommand::DeleteAll)
     }),
-    bind(plain(Key::F1), Group::Paths, "keep 10 MiB of paths less", |w| {
-        let budget = w.settings.cloud.budget_mib;
-        Command::Cloud(CloudCommand::Budget(budget.saturating_sub(TEN).max(16)))
+    bind(plain(Key::A), Group::Paths, "handles of selectors move, or scale", handles),
+    bind(plain(Key::F1), Group::Paths, "let 10 paths less wait (limit)", |w| {
+        Command::Cloud(CloudCommand::Limit(w.settings.cloud.limit.saturating_sub(TEN).max(TEN)))
     }),
-    bind(plain(Key::F2), Group::Paths, "keep 10 MiB of paths more", |w| {
-        Command::Cloud(CloudCommand::Budget((w.settings.cloud.budget_mib + TEN).min(4096)))
+    bind(plain(Key::F2), Group::Paths, "let 10 paths more wait (limit)", |w| {
+        Command::Cloud(CloudCommand::Limit((w.settings.cloud.limit + TEN).min(MOST)))
     }),
-    bind(plain(Key::F3), Group::Paths, "draw 10 paths less", |w| {
+    bind(plain(Key::F3), Group::Paths, "draw 10 paths less (draw limit)", |w| {
         Command::Cloud(CloudCommand::Shown(w.settings.cloud.shown.saturating_sub(TEN)))
     }),
-    bind(plain(Key::F4), Group::Paths, "draw 10 paths more", |w| {
-        Command::Cloud(CloudCommand::Shown((w.settings.cloud.shown + TEN).min(1_000_000)))
+    bind(plain(Key::F4), Group::Paths, "draw 10 paths more (draw limit)", |w| {
+        Command::Cloud(CloudCommand::Shown((w.settings.cloud.shown + TEN).min(MOST)))
+    }),
+    bind(plain(Key::F5), Group::Paths, "filter when 10 paths less wait (threshold)", |w| {
+        Command::Cloud(CloudCommand::Threshold(w.settings.cloud.threshold.saturating_sub(TEN)))
+    }),
+    bind(plain(Key::F6), Group::Paths, "filter when 10 paths more wait (threshold)", |w| {
+        Command::Cloud(CloudCommand::Threshold((w.settings.cloud.threshold + TEN).min(MOST)))
     }),
     bind(plain(Key::F8), Group::Explorer, "a single step", |_| explore(ExplorerCommand::Step(1))),
     bind(plain(Key::F9), Group::Explorer, "pause, or go on", play_or_pause),
@@ -79,7 +85,7 @@ pub(super) const MOUSE: &[(&str, &str)] = &[
 
 /// True for keys that are taken though no binding names them: the viewport has them.
 pub(super) fn is_taken(key: Key) -> bool {
-    matches!(key, Key::Z | Key::X | Key::C | Key::V | Key::A)
+    matches!(key, Key::Z | Key::X | Key::C | Key::V)
 }
 
 #[cfg(test)]

@@ -8,9 +8,9 @@ use common::{ExplorerCommand, MIN_RATE, Order, Pace, Seed, SelectorKind, SkipTo}
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use crate::command::{
-    CameraCommand, CloudCommand, ColorMode, Command, DeskCommand, ImageCommand, LayoutCommand,
-    PanelName, PathCommand, PlayCommand, SceneCommand, Shading, Side, Switch, ThemeName,
-    VertexStep,
+    Blend, CameraCommand, CloudCommand, ColorMode, Command, DeskCommand, Handles, ImageCommand,
+    LayoutCommand, PanelName, PathCommand, PlayCommand, SceneCommand, Shading, Side, Switch,
+    ThemeName, VertexStep,
 };
 use crate::settings::SCALES;
 use crate::world::World;
@@ -215,6 +215,18 @@ const BINDINGS: &[Binding] = &[
         let next = after(&ColorMode::ALL, world.settings.cloud.color);
         Command::Cloud(CloudCommand::Color(next))
     }),
+    bind(plain(Key::M), Group::Paths, "paths cover, weigh, or add up", |world| {
+        let next = after(&Blend::ALL, world.settings.cloud.blend);
+        Command::Cloud(CloudCommand::Blend(next))
+    }),
+    bind(plain(Key::Minus), Group::Paths, "draw half as many paths", |world| {
+        Command::Cloud(CloudCommand::Shown((world.settings.cloud.shown / 2).max(1)))
+    }),
+    bind(plain(Key::Equals), Group::Paths, "draw twice as many paths", |world| {
+        let shown = world.settings.cloud.shown.max(1).saturating_mul(2);
+        Command::Cloud(CloudCommand::Shown(shown.min(10_000_000)))
+    }),
+    bind(plain(Key::H), Group::Paths, "handles of selectors move, or scale", handles),
     bind(plain(Key::OpenBracket), Group::Paths, "thinner lines", |w| width(w, 1.0 / 1.25)),
     bind(plain(Key::CloseBracket), Group::Paths, "thicker lines", |w| width(w, 1.25)),
     bind(plain(Key::L), Group::Paths, "tint the light end and the camera end", |_| {
@@ -240,10 +252,15 @@ const BINDINGS: &[Binding] = &[
     }),
     bind(ctrl(Key::Z), Group::View, "undo", |_| Command::Undo),
     bind(ctrl(Key::Y), Group::View, "redo", |_| Command::Redo),
-    bind(plain(Key::Z), Group::View, "shaded, edges, wireframe, off", |world| {
-        let next = after(&Shading::ALL, world.settings.scene.shading);
-        Command::Scene(SceneCommand::Shading(next))
-    }),
+    bind(
+        plain(Key::Z),
+        Group::View,
+        "next shading: shaded, plain, texture, edges, wireframe, off",
+        |world| {
+            let next = after(&Shading::ALL, world.settings.scene.shading);
+            Command::Scene(SceneCommand::Shading(next))
+        },
+    ),
     bind(plain(Key::X), Group::View, "X-ray: see through surfaces", |world| {
         let solid = world.settings.scene.opacity > 0.99;
         Command::Scene(SceneCommand::Opacity(if solid { 0.3 } else { 1.0 }))
@@ -285,6 +302,10 @@ fn seed(world: &World<'_>) -> Command {
     explore(ExplorerCommand::Seed(seed))
 }
 
+fn handles(world: &World<'_>) -> Command {
+    Command::Scene(SceneCommand::Handles(after(&Handles::ALL, world.settings.scene.handles)))
+}
+
 fn play_or_pause(world: &World<'_>) -> Command {
     if let Some(command) = in_file(world, PlayCommand::Run(Switch::Toggle)) {
         return command;
@@ -304,6 +325,8 @@ pub fn key_name(shortcut: KeyboardShortcut) -> String {
     let key = match shortcut.logical_key {
         Key::OpenBracket => "[",
         Key::CloseBracket => "]",
+        Key::Minus => "-",
+        Key::Equals => "=",
         Key::Comma => ",",
         Key::Period => ".",
         other => other.name(),

@@ -4,7 +4,7 @@ use egui::{Button, ProgressBar, RichText, Ui};
 
 use super::Panel;
 use super::widgets::{Scale, choice, row, slider, toggle};
-use crate::command::{CloudCommand, ColorMode, ColorScale, Command, Marks, Switch};
+use crate::command::{Blend, CloudCommand, ColorMode, ColorScale, Command, Marks, Switch};
 use crate::format;
 use crate::world::World;
 
@@ -19,7 +19,7 @@ impl Panel for Cloud {
         ui.add_space(4.0);
         look(ui, world, &mut push);
         ui.add_space(4.0);
-        amount(ui, world, &mut push);
+        budget(ui, world, &mut push);
     }
 }
 
@@ -54,6 +54,11 @@ fn look(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(CloudCommand)) {
     if let Some(marks) = choice(ui, "Draw", tip, cloud.marks, &Marks::ALL) {
         push(CloudCommand::Marks(marks));
     }
+    let tip = "Newest: it covers the others. Weighted: each counts by its opacity, near ones more, in \
+               whatever order they came. Add: like light, for dark ground (M)";
+    if let Some(blend) = choice(ui, "Crossing", tip, cloud.blend, &Blend::ALL) {
+        push(CloudCommand::Blend(blend));
+    }
     let tip = "Width of the lines on screen, whatever their distance ( [ and ] )";
     let scale = Scale::logarithmic(0.25..=20.0, 2).suffix(" px");
     if let Some(pixels) = slider(ui, "Width", tip, cloud.width, scale) {
@@ -87,11 +92,14 @@ fn look(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(CloudCommand)) {
     }
 }
 
-fn amount(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(CloudCommand)) {
+/// How many paths wait, are drawn and are kept: the limits, and where they stand.
+fn budget(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(CloudCommand)) {
     let cloud = &world.settings.cloud;
-    let tip = "How many of the newest paths are drawn";
-    let scale = Scale::logarithmic(1.0..=1e6, 0);
-    if let Some(paths) = slider(ui, "Shown", tip, cloud.shown as f32, scale) {
+    let store = world.store;
+    ui.label(RichText::new("Budget").strong());
+    let many = || Scale::logarithmic(1.0..=1e6, 0);
+    let tip = "How many of the newest paths are drawn at once (- and =; draw limit of 2014)";
+    if let Some(paths) = slider(ui, "Draw", tip, cloud.shown as f32, many()) {
         push(CloudCommand::Shown(paths.round() as u32));
     }
     let tip = "Memory for paths; when it is full, the oldest go";
@@ -99,16 +107,68 @@ fn amount(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(CloudCommand)) {
     if let Some(mebibytes) = slider(ui, "Keep", tip, cloud.budget_mib as f32, scale) {
         push(CloudCommand::Budget(mebibytes.round() as u32));
     }
-    let store = world.store;
     row(ui, "", "", |ui| {
         let share = store.byte_len() as f32 / store.budget().max(1) as f32;
         ui.add(ProgressBar::new(share).desired_height(5.0).desired_width(ui.available_width()))
             .on_hover_text("How full the memory for paths is");
     });
-    let held = format!(
-        "{} paths kept, {}",
-        format::count(store.len() as f64),
-        format::bytes(store.byte_len() as u64)
+    let tip = "How many paths must wait before they are taken in and filtered, all at once; \
+               0 takes each as it comes (threshold of 2014)";
+    let scale = Scale::logarithmic(0.0..=1e6, 0);
+    if let Some(paths) = slider(ui, "Take in at", tip, cloud.threshold as f32, scale) {
+        push(CloudCommand::Threshold(paths.round() as u32));
+    }
+    let tip = "How many paths may wait to be taken in; when more do, the oldest go, and the status \
+               bar counts them as lost (limit of 2014)";
+    let scale = Scale::logarithmic(10.0..=1e6, 0);
+    if let Some(paths) = slider(ui, "Wait", tip, cloud.limit as f32, scale) {
+        push(CloudCommand::Limit(paths.round() as u32));
+    }
+    let count = |paths: usize| format::count(paths as f64);
+    let drawn = (cloud.shown as usize).min(store.len());
+    let standing = format!(
+        "{} drawn, {} kept in {}, {} waiting",
+        count(drawn),
+        count(store.len()),
+        format::bytes(store.byte_len() as u64),
+        count(world.waiting)
     );
-    row(ui, "", "", |ui| ui.label(RichText::new(held).small().weak()));
+    ui.label(RichText::new(standing).small().weak());
+}
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::kittest::Queryable as _;
+
+    use super::super::tests::{Stage, shows};
+    use super::*;
+
+    #[test]
+    fn the_budget_stands_below_the_look() {
+        let mut stage = Stage::new(Cloud);
+        let path: &[[f32; 3]] = &[[0.0; 3], [1.0; 3]];
+        stage.store.append(&crate::synthetic::batch(&[path; 3]));
+        stage.settings.cloud.shown = 2;
+        let mut harness = stage.harness();
+        harness.run();
+        for text in ["Budget", "Draw", "Keep", "Take in at", "Wait", "2 drawn, 3 kept", "0 waiting"]
+        {
+            assert!(shows(&harness, text), "`{text}` is missing");
+        }
+        harness.get_by_label("Take in at").hover();
+        harness.run_steps(30);
+        assert!(shows(&harness, "threshold of 2014"), "what it was called is told");
+    }
+
+    #[test]
+    fn only_ramps_with_two_scales_offer_them() {
+        for mode in ColorMode::ALL {
+            let mut stage = Stage::new(Cloud);
+            stage.settings.cloud.color = mode;
+            let mut harness = stage.harness();
+            harness.run();
+            let offered = harness.query_by_label("Scale").is_some();
+            assert_eq!(offered, mode.has_scale(), "{mode}");
+        }
+    }
 }

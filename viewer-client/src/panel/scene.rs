@@ -3,8 +3,10 @@
 use egui::{Button, RichText, Ui};
 
 use super::Panel;
-use super::widgets::{Scale, choice, slider, toggle};
-use crate::command::{CameraCommand, ClipSide, Command, SceneCommand, Shading, Switch};
+use super::widgets::{Scale, choice, row, slider, toggle};
+use crate::command::{
+    CameraCommand, ClipSide, Command, Light, Lighting, SceneCommand, Shading, Switch,
+};
 use crate::format;
 use crate::world::World;
 
@@ -16,10 +18,11 @@ impl Panel for Scene {
     fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
         let scene = &world.settings.scene;
         let mut push = |command| commands.push(Command::Scene(command));
-        let tip = "How surfaces are drawn (Z)";
+        let tip = "Lit with textures, lit in plain colours, textures alone, with edges, or not (Z)";
         if let Some(shading) = choice(ui, "Surfaces", tip, scene.shading, &Shading::ALL) {
             push(SceneCommand::Shading(shading));
         }
+        light(ui, world, &mut push);
         let tip = "Below 1, paths inside and behind are seen through surfaces (X)";
         if let Some(x) = slider(ui, "Opacity", tip, scene.opacity, Scale::linear(0.0..=1.0, 2)) {
             push(SceneCommand::Opacity(x));
@@ -60,6 +63,36 @@ impl Panel for Scene {
     }
 }
 
+/// The light of the preview, which has nothing to do with the lights of the scene.
+fn light(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(SceneCommand)) {
+    let scene = &world.settings.scene;
+    if matches!(scene.shading, Shading::Texture | Shading::Off | Shading::Wireframe) {
+        return;
+    }
+    let tip = "Soft: a sky, too, so that nothing is black. Phong: one point light, as in 2014";
+    if let Some(lighting) = choice(ui, "Lighting", tip, scene.lighting, &Lighting::ALL) {
+        push(SceneCommand::Lighting(lighting));
+    }
+    row(ui, "Light", "Where the preview is lit from; its lamps stay as they are", |ui| {
+        let at_eye = scene.light == Light::Camera;
+        let camera = ui
+            .add(Button::new("At the eye").selected(at_eye))
+            .on_hover_text("It goes wherever you look from");
+        if camera.clicked() {
+            push(SceneCommand::Light(Light::Camera));
+        }
+        let place = ui
+            .add(Button::new("In the scene").selected(!at_eye))
+            .on_hover_text("It stays at a point; drag its handles in the view");
+        if place.clicked() && at_eye {
+            let bounds = world.camera.bounds();
+            let above = bounds.centre() + 0.6 * bounds.radius() * world.camera.up();
+            let place = world.names().world(above.into());
+            push(SceneCommand::Light(Light::At(place.to_array())));
+        }
+    });
+}
+
 fn views(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let frame = ui.button("Frame all").on_hover_text("Show the whole scene (Home)");
@@ -79,4 +112,42 @@ fn views(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
             commands.push(Command::Camera(CameraCommand::Fly(Switch::Toggle)));
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::kittest::Queryable as _;
+
+    use super::super::tests::Stage;
+    use super::*;
+
+    #[test]
+    fn the_light_leaves_the_eye_and_returns() {
+        let mut harness = Stage::new(Scene).harness();
+        harness.run();
+        harness.get_by_label("In the scene").click();
+        harness.run();
+        let said = harness.state_mut().said.split_off(0);
+        let [Command::Scene(SceneCommand::Light(light @ Light::At(_)))] = said.as_slice() else {
+            panic!("{said:?} instead of a place");
+        };
+        harness.state_mut().settings.scene.light = *light;
+        harness.run();
+        harness.get_by_label("At the eye").click();
+        harness.run();
+        let expected = Command::Scene(SceneCommand::Light(Light::Camera));
+        assert_eq!(harness.state().said, [expected], "and back");
+    }
+
+    #[test]
+    fn surfaces_without_shade_need_no_light() {
+        for shading in Shading::ALL {
+            let mut stage = Stage::new(Scene);
+            stage.settings.scene.shading = shading;
+            let mut harness = stage.harness();
+            harness.run();
+            let lit = matches!(shading, Shading::Shaded | Shading::Plain | Shading::Edges);
+            assert_eq!(harness.query_by_label("At the eye").is_some(), lit, "{shading}");
+        }
+    }
 }

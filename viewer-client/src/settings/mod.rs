@@ -10,8 +10,8 @@ use glam::{Vec3, Vec4};
 
 use crate::camera::Bounds;
 use crate::command::{
-    Channel, ClipSide, CloudCommand, ColorMode, ColorScale, ImageCommand, Layer, Marks,
-    SceneCommand, Shading, ToneCurve,
+    Blend, Channel, ClipSide, CloudCommand, ColorMode, ColorScale, Handles, ImageCommand, Layer,
+    Light, Lighting, Marks, SceneCommand, Shading, ToneCurve,
 };
 
 /// Every choice.
@@ -44,6 +44,10 @@ pub struct CloudSettings {
     pub fade: f32,
     /// How many of the newest paths are drawn.
     pub shown: u32,
+    /// How many paths may wait to be taken in.
+    pub limit: u32,
+    /// How many must wait before any is taken in.
+    pub threshold: u32,
     /// Memory for paths in MiB, graphics memory included.
     pub budget_mib: u32,
     /// What the colour says.
@@ -56,6 +60,8 @@ pub struct CloudSettings {
     pub marks: Marks,
     /// How values become places on the ramp of colours.
     pub scale: ColorScale,
+    /// What becomes of paths that cross.
+    pub blend: Blend,
     /// How much distance dims paths, from 0 to 1.
     pub cue: f32,
     /// Relative opacity of paths that the filter leaves out; 0 hides them.
@@ -71,12 +77,15 @@ impl Default for CloudSettings {
             hidden: 0.08,
             fade: 500.0,
             shown: 2500,
+            limit: 100_000,
+            threshold: 0,
             budget_mib: 128,
             color: ColorMode::Radiance,
             ends: true,
             dots: 0.0,
             marks: Marks::Lines,
             scale: ColorScale::Log,
+            blend: Blend::Newest,
             cue: 0.0,
             dim: 0.1,
         }
@@ -94,12 +103,15 @@ impl CloudSettings {
             CloudCommand::Hidden(x) => self.hidden = x,
             CloudCommand::Fade(paths) => self.fade = paths,
             CloudCommand::Shown(paths) => self.shown = paths,
+            CloudCommand::Limit(paths) => self.limit = paths,
+            CloudCommand::Threshold(paths) => self.threshold = paths,
             CloudCommand::Budget(mebibytes) => self.budget_mib = mebibytes,
             CloudCommand::Color(mode) => self.color = mode,
             CloudCommand::Ends(switch) => switch.apply(&mut self.ends),
             CloudCommand::Dots(pixels) => self.dots = pixels,
             CloudCommand::Marks(marks) => self.marks = marks,
             CloudCommand::Scale(scale) => self.scale = scale,
+            CloudCommand::Blend(blend) => self.blend = blend,
             CloudCommand::Cue(x) => self.cue = x,
             CloudCommand::Dim(x) => self.dim = x,
         }
@@ -117,6 +129,12 @@ pub struct SceneSettings {
     pub cutaway: bool,
     /// Lines that belong to no path.
     pub aids: DrawingAids,
+    /// The light that surfaces are seen by.
+    pub light: Light,
+    /// How surfaces answer it.
+    pub lighting: Lighting,
+    /// What the handles of selectors do.
+    pub handles: Handles,
     /// What a plane cuts away.
     pub clip: ClipSide,
     /// Where the plane lies, from 0 to 1 across the scene.
@@ -140,6 +158,9 @@ impl Default for SceneSettings {
             opacity: 1.0,
             cutaway: true,
             aids,
+            light: Light::Camera,
+            lighting: Lighting::Soft,
+            handles: Handles::Move,
             clip: ClipSide::Off,
             cut: 0.5,
         }
@@ -155,6 +176,9 @@ impl SceneSettings {
             SceneCommand::Cutaway(switch) => switch.apply(&mut self.cutaway),
             SceneCommand::Camera(switch) => switch.apply(&mut self.aids.camera),
             SceneCommand::Grid(switch) => switch.apply(&mut self.aids.grid),
+            SceneCommand::Light(light) => self.light = light,
+            SceneCommand::Lighting(lighting) => self.lighting = lighting,
+            SceneCommand::Handles(handles) => self.handles = handles,
             SceneCommand::Clip(side) => self.clip = side,
             SceneCommand::Cut(place) => self.cut = place,
         }
@@ -162,12 +186,7 @@ impl SceneSettings {
 
     /// True when surfaces cover what lies behind them.
     pub fn covers(&self) -> bool {
-        matches!(self.shading, Shading::Shaded | Shading::Edges) && self.opacity > 0.5
-    }
-
-    /// True when surfaces hide what lies behind them.
-    pub fn hides(&self) -> bool {
-        matches!(self.shading, Shading::Shaded | Shading::Edges) && self.opacity > 0.5
+        !matches!(self.shading, Shading::Wireframe | Shading::Off) && self.opacity > 0.5
     }
 
     /// The plane whose positive side is drawn, in a scene of these bounds.

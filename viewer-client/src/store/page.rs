@@ -1,7 +1,7 @@
 //! A page: as many whole paths as fit into a fixed number of vertices.
 
-use common::{CompiledFilter, PathHeader, PathView, VertexRecord};
-use shaders::{LinePoint, encode_radiance, role};
+use common::{CompiledFilter, PathHeader, PathView, THROUGHPUT_UNKNOWN, VertexRecord};
+use shaders::{LinePoint, encode_radiance, path_word, role, strategy_and_edges};
 
 /// Vertices a page holds.
 pub const PAGE_POINTS: usize = 16 * 1024;
@@ -50,7 +50,7 @@ impl Drawn {
     }
 }
 
-/// Whole paths in two columns. It never reallocates, so that its size is known beforehand.
+/// Whole paths in columns. It never reallocates, so that its size is known beforehand.
 #[derive(Debug)]
 pub struct Page {
     serial: u64,
@@ -58,11 +58,13 @@ pub struct Page {
     matched: usize,
     paths: Vec<StoredPath>,
     vertices: Vec<VertexRecord>,
+    /// Codes of the throughputs at them.
+    throughput: Vec<u8>,
 }
 
 impl Page {
     /// Bytes that a page uses at most, with its copy on the graphics card.
-    pub const BYTES: usize = PAGE_POINTS * (size_of::<VertexRecord>() + size_of::<LinePoint>())
+    pub const BYTES: usize = PAGE_POINTS * (size_of::<VertexRecord>() + 1 + size_of::<LinePoint>())
         + PAGE_PATHS * size_of::<StoredPath>();
 
     pub(super) fn new(serial: u64) -> Self {
@@ -72,6 +74,7 @@ impl Page {
             matched: 0,
             paths: Vec::with_capacity(PAGE_PATHS),
             vertices: Vec::with_capacity(PAGE_POINTS),
+            throughput: Vec::with_capacity(PAGE_POINTS),
         }
     }
 
@@ -124,6 +127,8 @@ impl Page {
             ordinal,
         });
         self.vertices.extend_from_slice(path.vertices);
+        self.throughput.extend_from_slice(path.throughput);
+        self.throughput.resize(self.vertices.len(), THROUGHPUT_UNKNOWN);
         self.matched += usize::from(matched);
     }
 
@@ -155,13 +160,17 @@ impl Page {
             let last = usize::from(path.count).saturating_sub(1);
             let dimmed = if path.matched { 0 } else { role::DIMMED };
             let group = (path.header.id.chain.0 % 16) as u8 | path.class << 4;
-            self.vertices(path).iter().enumerate().map(move |(i, vertex)| {
+            let ordinal = path_word(path.ordinal, path.header.acceptance, path.header.dwell);
+            let making = strategy_and_edges(path.header.strategy.0, last);
+            let throughput = self.throughput.get(path.range()).unwrap_or_default();
+            let vertices = self.vertices(path).iter().zip(throughput);
+            vertices.enumerate().map(move |(i, (vertex, throughput))| {
                 let start = if i == 0 { role::START } else { 0 };
                 let end = if i == last { role::LAST } else { 0 };
                 let kind = (vertex.kind as u8) << role::KIND_SHIFT;
                 let roles = start | end | dimmed | kind;
-                let info = [roles, path.header.strategy.0, group, last as u8];
-                LinePoint { position: vertex.position, color, ordinal: path.ordinal, info }
+                let info = [roles, making, group, *throughput];
+                LinePoint { position: vertex.position, color, ordinal, info }
             })
         })
     }

@@ -1,7 +1,8 @@
 //! The budget holds, the order holds, and nothing is lost unseen.
 
 use common::{
-    BatchBuilder, BatchLimits, ChainId, Event, PathHeader, PathId, VertexKind, VertexRecord,
+    BatchBuilder, BatchLimits, ChainId, Event, PathHeader, PathId, THROUGHPUT_UNKNOWN, VertexKind,
+    VertexRecord, encode_throughput,
 };
 use shaders::role;
 
@@ -70,9 +71,31 @@ fn points_are_the_vertices_in_order_with_their_roles() {
     let info: Vec<_> = points[4..].iter().map(|p| p.info[0]).collect();
     let kind = (VertexKind::Diffuse as u8) << role::KIND_SHIFT;
     assert_eq!(info, [role::START, 0, 0, role::LAST].map(|r| r | kind), "roles and kinds");
-    assert_eq!(points[7].info[3], 3, "edges");
-    assert_eq!(points[7].ordinal, 2, "the third path");
+    assert_eq!(points[7].info[1] >> 4, 3, "edges");
+    assert_eq!(points[7].info[3], THROUGHPUT_UNKNOWN, "nobody told the throughput");
+    assert_eq!(points[7].ordinal & 0xff_ffff, 2, "the third path");
     assert_eq!(points[0].color[..3], [255, 180, 0], "hue at full scale");
+}
+
+#[test]
+fn what_batches_tell_of_throughputs_is_kept() {
+    let mut builder = BatchBuilder::new(BatchLimits { bytes: usize::MAX });
+    let path = [vertex(0.0), vertex(1.0), vertex(2.0)];
+    let header = PathHeader { acceptance: 0.2, dwell: 9, ..PathHeader::default() };
+    let codes = [0.125, 0.5, 1.0].map(encode_throughput);
+    assert!(builder.push_with(&header, (&path, &codes), None).is_none(), "room enough");
+    assert!(builder.push_with(&header, (&path, &[]), Some((1, 1))).is_none(), "room enough");
+    let mut store = Store::new(usize::MAX);
+    store.append(&builder.finish().expect("two paths"));
+    let page = store.pages().next().expect("a page");
+    let points: Vec<_> = page.points(0, Drawn::All).collect();
+    let of = |range: std::ops::Range<usize>| points[range].iter().map(|p| p.info[3]);
+    assert!(of(0..3).eq(codes), "one a vertex");
+    assert!(of(3..6).eq([THROUGHPUT_UNKNOWN; 3]), "also where a path keeps vertices");
+    assert_eq!(points[0].ordinal >> 24, 3 << 4 | 3, "eight to fifteen steps, three fifteenths");
+    let [codes_per_stop, lowest] = shaders::THROUGHPUT_CODE;
+    let read = (f32::from(codes[0]) - 1.0) / codes_per_stop + lowest;
+    assert_eq!(common::decode_throughput(codes[0]), Some(read), "shaders read it alike");
 }
 
 #[test]

@@ -71,6 +71,7 @@ impl Stage {
     /// All that the panel may read.
     pub(super) fn world(&self) -> World<'_> {
         World {
+            waiting: 0,
             settings: &self.settings,
             camera: &self.camera,
             status: &self.status,

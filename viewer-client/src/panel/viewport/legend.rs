@@ -45,6 +45,12 @@ pub(super) fn paint(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color
             let title = format!("luminance ({scale})");
             column.ramp(&title, &lowest, &format!("{:.1e}", high.exp2()), &ramp);
         }
+        ColorMode::Throughput => {
+            let lowest = if scale == ColorScale::Log { "0.001 and less" } else { "0" };
+            column.ramp(&format!("throughput to the lens ({scale})"), lowest, "1", &ramp);
+        }
+        ColorMode::Dwell => column.ramp("steps stayed (log)", "1", "16 and more", &ramp),
+        ColorMode::Acceptance => column.ramp("acceptance", "0", "1", &ramp),
         ColorMode::Age => {
             let oldest =
                 format!("{} paths ago and more", format::count(3.0 * f64::from(cloud.fade)));

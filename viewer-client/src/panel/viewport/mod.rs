@@ -2,8 +2,10 @@
 
 mod gesture;
 mod ghost;
+mod handles;
 mod highlight;
 mod legend;
+mod light;
 mod others;
 mod overlay;
 mod picture;
@@ -30,7 +32,10 @@ impl Panel for Viewport {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Viewport"));
         let projector = Projector::new(world.camera.lens(rect.aspect_ratio()), rect);
-        if !selectors::interact(ui, (&response, &projector), world, commands) {
+        let hand = (&response, &projector);
+        let held = selectors::interact(ui, hand, world, commands)
+            || light::interact(ui, hand, world, commands);
+        if !held {
             gesture::read(ui, &response, world, commands);
             if response.clicked()
                 && let Some(place) = response.interact_pointer_pos()

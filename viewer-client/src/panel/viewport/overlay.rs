@@ -6,7 +6,7 @@ use egui::{
 use glam::Vec3;
 
 use super::project::Projector;
-use super::{ghost, highlight, others, selectors};
+use super::{ghost, highlight, light, others, selectors};
 use crate::format;
 use crate::status::LinkState;
 use crate::theme;
@@ -29,6 +29,7 @@ pub(super) fn paint(ui: &Ui, projector: &Projector, rect: Rect, world: &World<'_
         return;
     }
     others::paint(&painter, projector, world, ink);
+    light::paint(&painter, projector, world);
     selectors::paint(&painter, projector, world);
     ghost::paint(&painter, projector, rect, world);
     highlight::paint(&painter, projector, world, ink);

@@ -5,8 +5,8 @@ use glam::{UVec4, Vec3, Vec4};
 use shaders::{FrameUniforms, PALETTE_SIZE, RAMP_SIZE};
 
 use crate::camera::NEAR;
-use crate::command::{ColorMode, ColorScale, Marks, Shading};
-use crate::gpu::{PageRange, Picture};
+use crate::command::{Blend, ColorMode, ColorScale, Light, Lighting, Marks, Shading};
+use crate::gpu::{Crossing, PageRange, Picture};
 use crate::settings::SceneSettings;
 use crate::theme;
 use crate::world::World;
@@ -19,7 +19,7 @@ const FADED: f32 = 0.10;
 const AT_LENS: f32 = 0.06;
 /// Light ground outshines thin lines; there they are this much more opaque.
 const ON_LIGHT_GROUND: f32 = 1.7;
-/// How much crossing paths add up on dark ground: 0 cover, 1 add.
+/// How much crossing paths add up on dark ground where the newest lies on top.
 const GLOW: f32 = 0.6;
 /// Smallest radius of dots that stand alone, in points.
 const LONE_DOT: f32 = 1.5;
@@ -34,18 +34,14 @@ pub(super) fn of(world: &World<'_>, size: [u32; 2], pixels_per_point: f32) -> Pi
     let inner_dots =
         if cloud.marks == Marks::Lines { cloud.dots } else { cloud.dots.max(LONE_DOT) };
     let start_dots = if cloud.ends { 0.9 * cloud.width + 0.6 } else { inner_dots };
+    let textured = world.settings.scene.shading != Shading::Plain;
     let uniforms = FrameUniforms {
         view_projection: lens.view_projection(),
         eye: lens.eye.extend(NEAR),
         up: world.camera.up().extend(if dark { 1.0 } else { 0.0 }),
         viewport: Vec4::new(width, height, 1.0 / width, 1.0 / height),
         line: line(world, pixels_per_point),
-        fade: Vec4::new(
-            cloud.fade,
-            FADED,
-            if dark { GLOW } else { 0.0 },
-            start_dots * pixels_per_point,
-        ),
+        fade: Vec4::new(cloud.fade, FADED, glow(cloud.blend, dark), start_dots * pixels_per_point),
         tone: Vec4::new(
             darkest,
             1.0 / (brightest - darkest).max(1e-3),
@@ -53,6 +49,8 @@ pub(super) fn of(world: &World<'_>, size: [u32; 2], pixels_per_point: f32) -> Pi
             if cloud.ends { 1.0 } else { 0.0 },
         ),
         surface: surface(&world.settings.scene),
+        light: light(world, lens.eye),
+        paint: Vec4::new(f32::from(u8::from(textured)), 0.0, 0.0, 0.0),
         count: UVec4::new(
             world.store.newest_ordinal(),
             color_code(cloud.color),
@@ -72,6 +70,10 @@ pub(super) fn of(world: &World<'_>, size: [u32; 2], pixels_per_point: f32) -> Pi
         paths: ranges.into_iter().map(|(serial, first)| PageRange { serial, first }).collect(),
         surfaces: world.settings.scene.shading != Shading::Off,
         lines: cloud.marks == Marks::Lines,
+        crossing: match cloud.blend {
+            Blend::Weighted => Crossing::Weighed,
+            Blend::Newest | Blend::Add => Crossing::Stacked,
+        },
     }
 }
 
@@ -86,12 +88,32 @@ fn line(world: &World<'_>, pixels_per_point: f32) -> Vec4 {
 
 fn surface(scene: &SceneSettings) -> Vec4 {
     let (opacity, edges) = match scene.shading {
-        Shading::Shaded | Shading::Off => (scene.opacity, 0.0),
+        Shading::Shaded | Shading::Plain | Shading::Texture | Shading::Off => (scene.opacity, 0.0),
         Shading::Edges => (scene.opacity, 1.0),
         Shading::Wireframe => (0.0, 1.0),
     };
     let backs = if scene.cutaway { CUTAWAY } else { 1.0 };
-    Vec4::new(opacity, backs, edges, 1.0)
+    let shaded = if scene.shading == Shading::Texture { 0.0 } else { 1.0 };
+    Vec4::new(opacity, backs, edges, shaded)
+}
+
+/// Where the light is, in scene units, and by which model surfaces answer it.
+fn light(world: &World<'_>, eye: Vec3) -> Vec4 {
+    let scene = &world.settings.scene;
+    let place = match scene.light {
+        Light::Camera => eye,
+        Light::At(place) => world.names().scene(place.into()).as_vec3(),
+    };
+    place.extend(if scene.lighting == Lighting::Phong { 1.0 } else { 0.0 })
+}
+
+/// How much crossing paths add up: 0 cover, 1 add.
+fn glow(blend: Blend, dark: bool) -> f32 {
+    match blend {
+        Blend::Newest if dark => GLOW,
+        Blend::Newest | Blend::Weighted => 0.0,
+        Blend::Add => 1.0,
+    }
 }
 
 /// The shader's code of a colour mode.
@@ -106,6 +128,9 @@ fn color_code(mode: ColorMode) -> u32 {
         ColorMode::Chain => 6,
         ColorMode::Class => 7,
         ColorMode::Constant => 8,
+        ColorMode::Throughput => 9,
+        ColorMode::Dwell => 10,
+        ColorMode::Acceptance => 11,
     }
 }
 
