@@ -95,6 +95,18 @@ explorer seed newest
 explorer step 60
 EOF
 
+shot path caustic 1280x900 all 60000 <<'EOF'
+panel image off
+panel statistics off
+panel diagnostics off
+panel explorer off
+panel filter off
+panel scene off
+cloud opacity 0.08
+path stay 0
+path vertex 1
+EOF
+
 shot filter caustic 1280x720 all 1200 <<'EOF'
 panel path off
 panel explorer off

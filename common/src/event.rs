@@ -27,6 +27,16 @@ impl VertexKind {
         }
     }
 
+    /// A word for panels and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Light => "light",
+            Self::Diffuse => "diffuse",
+            Self::Specular => "specular",
+            Self::Eye => "eye",
+        }
+    }
+
     /// The kind that travels as `code`, or `None` for a code this version does not know.
     pub fn from_code(code: u8) -> Option<Self> {
         [Self::Light, Self::Diffuse, Self::Specular, Self::Eye]

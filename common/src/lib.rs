@@ -6,6 +6,7 @@
 mod batch;
 mod camera;
 mod color;
+mod detail;
 mod diagnostics;
 mod event;
 mod filter;
@@ -22,6 +23,7 @@ pub use batch::{
 };
 pub use camera::{Camera, CameraError, CameraPose};
 pub use color::Rgb;
+pub use detail::{DetailReply, PathDetail, VertexDetail};
 pub use diagnostics::{Diagnostics, TileGrid, TileMaps, UNKNOWN};
 pub use event::{Event, VertexKind};
 pub use filter::{

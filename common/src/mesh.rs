@@ -93,3 +93,11 @@ pub struct SceneMesh {
     /// The render camera.
     pub camera: Option<Camera>,
 }
+
+impl SceneMesh {
+    /// The object that a primitive belongs to, where it has a name.
+    pub fn object(&self, primitive: u32) -> Option<&str> {
+        let named = self.objects.iter().find(|object| object.primitives.contains(&primitive));
+        named.map(|object| object.name.as_str())
+    }
+}

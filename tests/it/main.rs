@@ -6,6 +6,7 @@
 mod cable;
 mod citations;
 mod daemon;
+mod detail;
 mod documents;
 mod explorer;
 mod filters;

@@ -2,7 +2,7 @@
 
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 
-use common::{Author, ChainCommand, ExplorerCommand};
+use common::{Author, ChainCommand, ExplorerCommand, PathId};
 use thiserror::Error;
 
 /// Orders that may wait for the explorer, and as many for the chains.
@@ -24,6 +24,8 @@ pub struct Envelope<C> {
 pub enum ExplorerMail {
     /// An order.
     Order(Envelope<ExplorerCommand>),
+    /// The viewer of this session asks for the numbers behind a path.
+    Inspect(u64, PathId),
     /// Something that it waits for may have changed.
     Wake,
 }
@@ -66,6 +68,12 @@ impl Steering {
     /// Orders something of the explorer.
     pub fn explore(&self, order: Envelope<ExplorerCommand>) -> Result<(), NotTaken> {
         self.explorer.try_send(ExplorerMail::Order(order)).map_err(|error| why(&error))
+    }
+
+    /// Asks for the numbers behind a path, for the viewer of a session. The explorer's thread answers: it
+    /// knows how to make paths again, and no chain waits for it.
+    pub fn inspect(&self, session: u64, path: PathId) -> Result<(), NotTaken> {
+        self.explorer.try_send(ExplorerMail::Inspect(session, path)).map_err(|error| why(&error))
     }
 
     /// Orders something of the chains.

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use anyhow::{Context as _, anyhow};
 use clap::{Args, Parser, Subcommand};
-use common::{Filter, Order};
+use common::{Filter, Order, PathId};
 
 use crate::command::{self, Command};
 use crate::connection::{Bearer, Fingerprint, Peer, Trust};
@@ -121,6 +121,10 @@ pub struct WatchArgs {
     /// the one before is done, and the program ends after the last one unless the explorer plays.
     #[arg(long, value_name = "ORDER", value_parser = order, requires = "focus")]
     pub order: Vec<Order>,
+    /// Prints the numbers behind a path that was shown lately, such as `3.0.1520`: densities,
+    /// throughputs, geometry terms and the weight of every split; then ends.
+    #[arg(long, value_name = "CHAIN.EPOCH.STEP", conflicts_with_all = ["filter", "focus", "count"])]
+    pub inspect: Option<PathId>,
     /// Ends after this many batches, or steps of the explorer.
     #[arg(long, value_name = "N")]
     pub count: Option<u64>,

@@ -35,6 +35,19 @@ pub fn value(value: f32) -> String {
     }
 }
 
+/// A measured value with four significant digits: `0.2500`, `12.35`, `5.013e-4`.
+pub fn exact(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    if !(0.01..9999.5).contains(&size) {
+        return format!("{value:.3e}");
+    }
+    let before = if size < 1.0 { 0 } else { 1 + size.log10().floor() as usize };
+    format!("{value:.*}", 4_usize.saturating_sub(before))
+}
+
 /// Bytes in binary units: `512 B`, `1.50 KiB`, `12.0 MiB`.
 pub fn bytes(value: u64) -> String {
     let value = value as f64;
@@ -87,6 +100,17 @@ mod tests {
             [(0.0, "0"), (0.25, "0.25"), (100.0, "100"), (5e-4, "5.0e-4"), (1e6, "1.0e6")]
         {
             assert_eq!(value(number), text, "{number}");
+        }
+        for (number, text) in [
+            (0.0, "0"),
+            (0.25, "0.2500"),
+            (1.0, "1.000"),
+            (12.345, "12.35"),
+            (9876.4, "9876"),
+            (5.0128e-4, "5.013e-4"),
+            (123_456.0, "1.235e5"),
+        ] {
+            assert_eq!(exact(number), text, "{number}");
         }
         assert_eq!(bytes(1023), "1023 B", "bytes");
         assert_eq!(bytes(1536), "1.50 KiB", "kibibytes");

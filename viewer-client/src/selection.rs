@@ -1,10 +1,16 @@
 //! The path that the user looks at: a copy, so that it stays when the store drops the original.
 
-use common::{PathHeader, SceneFrame, SceneMesh, VertexRecord, decode_normal};
+use std::sync::Arc;
+use std::time::Instant;
+
+use common::{PathDetail, PathHeader, Rgb, SceneFrame, SceneMesh, VertexRecord, decode_normal};
 use glam::{DVec3, Vec3};
 
+use crate::camera::{Bounds, Lens};
 use crate::command::VertexStep;
-use crate::store::class_name;
+use crate::pick::{self, Aim, Pickable};
+use crate::settings::SceneSettings;
+use crate::store::{Store, class_name};
 
 /// A selected path.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,8 +21,24 @@ pub struct Selection {
     pub vertices: Vec<VertexRecord>,
     /// The vertex that is looked at.
     pub vertex: Option<usize>,
+    /// The numbers behind it.
+    pub detail: Detail,
     /// Which of the paths under the cursor it is, counted from one, and how many there are.
     pub place: (usize, usize),
+}
+
+/// What is known of the numbers behind a path.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Detail {
+    /// Nobody was asked.
+    #[default]
+    Unasked,
+    /// The daemon was asked then.
+    Asked(Instant),
+    /// They are known.
+    Known(Arc<PathDetail>),
+    /// They are not to be had, for a reason that people understand.
+    Missing(String),
 }
 
 /// What names and units the panels and the text form of a path need.
@@ -52,6 +74,11 @@ impl Names<'_> {
         materials.get(usize::from(index)).map_or("–", |material| material.name.as_str())
     }
 
+    /// The name of the object at a vertex, where it has one.
+    pub fn object(&self, vertex: &VertexRecord) -> Option<&str> {
+        self.mesh?.object(vertex.primitive).filter(|name| !name.is_empty())
+    }
+
     /// The name of the strategy that proposed a path.
     pub fn strategy(&self, header: &PathHeader) -> &str {
         let name = self.strategies.get(usize::from(header.strategy.0));
@@ -66,7 +93,15 @@ impl Names<'_> {
 impl Selection {
     /// A path of which no vertex is looked at.
     pub fn new(header: PathHeader, vertices: Vec<VertexRecord>) -> Self {
-        Self { header, vertices, vertex: None, place: (1, 1) }
+        Self { header, vertices, vertex: None, detail: Detail::Unasked, place: (1, 1) }
+    }
+
+    /// The numbers behind it, where they are known.
+    pub fn numbers(&self) -> Option<&PathDetail> {
+        match &self.detail {
+            Detail::Known(detail) => Some(detail),
+            Detail::Unasked | Detail::Asked(_) | Detail::Missing(_) => None,
+        }
     }
 
     /// Goes to another vertex, round the ends.
@@ -121,7 +156,8 @@ impl Selection {
             let p = names.world(vertex.position);
             let n = decode_normal(vertex.normal);
             let line = format!(
-                "x{i} {} {:<8} position {:.6} {:.6} {:.6}  normal {:.4} {:.4} {:.4}  material {}",
+                "x{i} {} {:<8} position {:.6} {:.6} {:.6}  normal {:.4} {:.4} {:.4}  material {}  \
+                 object {}",
                 vertex.kind.letter(),
                 vertex.event.name(),
                 p.x,
@@ -131,10 +167,87 @@ impl Selection {
                 n.y,
                 n.z,
                 names.material(vertex),
+                names.object(vertex).unwrap_or("–"),
             );
             text.push_str(&line);
             text.push('\n');
         }
+        if let Some(detail) = self.numbers() {
+            text.push_str(&numbers_text(detail));
+        }
         text
+    }
+}
+
+/// Densities, throughputs and geometry of every vertex, and what each split counts, one a line.
+pub fn numbers_text(detail: &PathDetail) -> String {
+    let mut lines = Vec::new();
+    for (i, vertex) in detail.vertices.iter().enumerate() {
+        let geometry =
+            detail.geometry.get(i).map_or_else(|| "–".to_owned(), |g| format!("{g:.9e}"));
+        lines.push(format!(
+            "x{i} from light: pdf {:.9e} throughput {}  from eye: pdf {:.9e} throughput {}  G to x{} \
+             {geometry}",
+            vertex.light_pdf,
+            triple(detail.light_throughput(i)),
+            vertex.eye_pdf,
+            triple(detail.eye_throughput(i)),
+            i + 1,
+        ));
+    }
+    for (light, reciprocal) in detail.reciprocals.iter().enumerate() {
+        let counts = if *reciprocal > 0.0 {
+            format!("C {:.9e} weight {:.9}", 1.0 / reciprocal, detail.share(light))
+        } else {
+            "cannot make it".to_owned()
+        };
+        lines.push(format!("split {light} from light: {counts}"));
+    }
+    lines.push(String::new());
+    lines.join("\n")
+}
+
+fn triple(color: Rgb) -> String {
+    format!("{:.6e} {:.6e} {:.6e}", color.r, color.g, color.b)
+}
+
+/// What can be seen of the paths.
+#[derive(Clone, Copy, Debug)]
+pub struct Sight<'a> {
+    /// The paths.
+    pub store: &'a Store,
+    /// The eye.
+    pub lens: &'a Lens,
+    /// The box round the scene.
+    pub bounds: Bounds,
+    /// How surfaces are drawn.
+    pub scene: &'a SceneSettings,
+    /// The surfaces.
+    pub mesh: Option<&'a SceneMesh>,
+    /// So many of the newest paths are drawn.
+    pub newest: usize,
+}
+
+impl Sight<'_> {
+    /// The paths under the cursor, in the order in which clicks go through them.
+    pub fn paths(&self, aim: Aim) -> Vec<Selection> {
+        let clip = self.scene.clip_plane(self.bounds);
+        let mesh = self.mesh.filter(|_| self.scene.covers());
+        let surface = mesh
+            .and_then(|mesh| pick::surface_at(mesh, self.lens, aim.at, !self.scene.cutaway, clip))
+            .map(|(depth, _)| depth);
+        let pickable = Pickable { newest: self.newest, clip };
+        let hits = pick::paths_at(self.store, self.lens, aim, pickable, surface);
+        let found = hits.iter().filter_map(|hit| {
+            let page = self.store.page(hit.page)?;
+            let path = page.paths().get(hit.index)?;
+            Some(Selection::new(path.header, page.vertices(path).to_vec()))
+        });
+        let mut found: Vec<Selection> = found.collect();
+        let count = found.len();
+        for (i, selection) in found.iter_mut().enumerate() {
+            selection.place = (i + 1, count);
+        }
+        found
     }
 }

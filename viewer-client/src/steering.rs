@@ -67,7 +67,8 @@ impl Steering {
                 });
             }
             Notice::Reply(OrderReply { error: Some(error), .. }) => self.remark(error),
-            Notice::Reply(OrderReply { error: None, .. }) => {}
+            // The viewer keeps these with the path that they are about.
+            Notice::Reply(OrderReply { error: None, .. }) | Notice::Detail(_) => {}
         }
     }
 

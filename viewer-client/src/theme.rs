@@ -143,6 +143,8 @@ pub fn install(ctx: &egui::Context) {
         spacing.item_spacing = vec2(8.0, 5.0);
         spacing.button_padding = vec2(8.0, 3.0);
         spacing.interact_size.y = 22.0;
+        // The bar has room of its own: over the panels it would hide the ends of their rows.
+        spacing.scroll.floating_allocated_width = 8.0;
         spacing.slider_rail_height = 5.0;
         spacing.menu_margin = Margin::same(6);
         spacing.window_margin = Margin::same(14);

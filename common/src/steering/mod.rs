@@ -8,7 +8,7 @@ mod explorer;
 
 use serde::{Deserialize, Serialize};
 
-use crate::Role;
+use crate::{DetailReply, Role};
 
 pub use chains::{ChainCommand, ChainState, LEAST_PRECISION, MAX_WEIGHT, MOST_PRECISION};
 pub use explorer::{
@@ -139,4 +139,6 @@ pub enum Notice {
     Lease(LeaseNotice),
     /// The answer to an order.
     Reply(OrderReply),
+    /// The answer to a question about a path.
+    Detail(Box<DetailReply>),
 }

@@ -33,6 +33,12 @@ pub(super) fn length(field: &'static str, found: usize, limit: usize) -> Result<
     if found > limit { Err(WireError::TooLong { field, found, limit }) } else { Ok(()) }
 }
 
+/// That a list is as long as another one says.
+pub(super) fn exactly(field: &'static str, found: usize, wanted: usize) -> Result<(), WireError> {
+    let bound = |length: usize| length.try_into().unwrap_or(u32::MAX);
+    within(field, bound(found), bound(wanted), bound(wanted)).map(drop)
+}
+
 /// The content of a field that must be there.
 pub(super) fn required<T>(field: &'static str, value: Option<T>) -> Result<T, WireError> {
     value.ok_or(WireError::Missing(field))

@@ -6,6 +6,7 @@
 mod camera;
 mod check;
 mod column;
+mod detail;
 mod diagnostics;
 mod error;
 mod film;

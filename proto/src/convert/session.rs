@@ -1,7 +1,7 @@
 //! The two directions of a session.
 
 use common::{
-    Appearance, FilmTile, FilterReply, FocusPath, FocusStep, Gap, Notice, PathBatch, Role,
+    Appearance, FilmTile, FilterReply, FocusPath, FocusStep, Gap, Notice, PathBatch, PathId, Role,
     Statistics, Welcome,
 };
 
@@ -44,6 +44,8 @@ pub enum ViewerEvent {
     Order(NumberedOrder),
     /// Shows something of itself.
     Appearance(Appearance),
+    /// Asks for the numbers behind a path.
+    Inspect(PathId),
     /// Leaves, with a reason.
     Goodbye(String),
     /// Something of a later version, to be ignored.
@@ -95,6 +97,9 @@ impl From<ViewerEvent> for v1::ViewerMessage {
             ViewerEvent::SetFocus(on) => Some(Kind::SetFocus(v1::SetFocus { on })),
             ViewerEvent::Order(order) => Some(Kind::Order(order.into())),
             ViewerEvent::Appearance(appearance) => Some(Kind::Appearance((&appearance).into())),
+            ViewerEvent::Inspect(path) => {
+                Some(Kind::InspectPath(v1::InspectPath { path: Some(path.into()) }))
+            }
             ViewerEvent::Goodbye(reason) => Some(Kind::Goodbye(v1::Goodbye { reason })),
             ViewerEvent::Unknown => None,
         };
@@ -114,6 +119,9 @@ impl TryFrom<v1::ViewerMessage> for ViewerEvent {
             Some(Kind::SetFocus(focus)) => Self::SetFocus(focus.on),
             Some(Kind::Order(order)) => Self::Order(order.try_into()?),
             Some(Kind::Appearance(appearance)) => Self::Appearance(appearance.try_into()?),
+            Some(Kind::InspectPath(inspect)) => {
+                Self::Inspect(check::required("inspect_path.path", inspect.path)?.into())
+            }
             Some(Kind::Goodbye(goodbye)) => Self::Goodbye(reason(goodbye)?),
             None => Self::Unknown,
         })
@@ -153,6 +161,7 @@ impl From<&Notice> for v1::tracer_message::Kind {
             Notice::Chains(state) => Self::ChainState(state.into()),
             Notice::Lease(notice) => Self::LeaseNotice(notice.into()),
             Notice::Reply(reply) => Self::OrderReply(reply.into()),
+            Notice::Detail(reply) => Self::PathDetail((&**reply).into()),
         }
     }
 }
@@ -179,6 +188,9 @@ impl TryFrom<v1::TracerMessage> for TracerEvent {
             Some(Kind::ChainState(state)) => Self::Notice(Notice::Chains(state.try_into()?)),
             Some(Kind::LeaseNotice(notice)) => Self::Notice(Notice::Lease(notice.try_into()?)),
             Some(Kind::OrderReply(reply)) => Self::Notice(Notice::Reply(reply.try_into()?)),
+            Some(Kind::PathDetail(reply)) => {
+                Self::Notice(Notice::Detail(Box::new(reply.try_into()?)))
+            }
             Some(Kind::Goodbye(goodbye)) => Self::Goodbye(reason(goodbye)?),
             None => Self::Unknown,
         })

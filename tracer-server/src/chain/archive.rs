@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use common::{ChainId, PathId};
 use thiserror::Error;
 
-use super::{Chain, Checkpoint};
+use super::{Chain, Checkpoint, LongestStay};
 use crate::film::Film;
 use crate::mutation::Mixture;
 use crate::path::Path;
@@ -42,6 +42,9 @@ pub enum Gone {
     Unknown(PathId),
 }
 
+/// Stays that are kept: many times as many as are told of at once.
+const MOST_STAYS: usize = 64;
+
 /// Rounds within a budget of bytes, oldest first.
 ///
 /// The thread of the chains puts rounds in, and readers hold the lock for one look-up only.
@@ -55,6 +58,8 @@ pub struct Archive {
 struct Shelf {
     rounds: VecDeque<Arc<Round>>,
     bytes: usize,
+    /// The longest stays that were told of, the newest last, whether or not they were shown.
+    stays: VecDeque<LongestStay>,
 }
 
 impl Round {
@@ -112,6 +117,17 @@ impl Archive {
         }
     }
 
+    /// Keeps the paths at which chains stayed longest, which may never have been shown.
+    pub fn keep(&self, stays: Vec<LongestStay>) {
+        let mut shelf = self.shelf();
+        for stay in stays {
+            shelf.stays.retain(|kept| kept.header.id != stay.header.id);
+            shelf.stays.push_back(stay);
+        }
+        let surplus = shelf.stays.len().saturating_sub(MOST_STAYS);
+        shelf.stays.drain(..surplus);
+    }
+
     /// The newest round.
     pub fn newest(&self) -> Option<Arc<Round>> {
         self.shelf().rounds.back().cloned()
@@ -129,6 +145,11 @@ impl Archive {
         id: PathId,
         film: &mut Film,
     ) -> Result<(Path, Arc<Round>), Gone> {
+        if let Some((stay, round)) = self.shelf().stay(id)
+            && let Ok(path) = Path::rebuild(scene, &stay.vertices, stay.film)
+        {
+            return Ok((path, round));
+        }
         let rounds = self.shelf().around(id)?;
         let found = rounds.into_iter().find_map(|round| {
             let path = round.replay(scene, id, film)?;
@@ -143,6 +164,12 @@ impl Archive {
 }
 
 impl Shelf {
+    /// The long stay at a path, with the newest round.
+    fn stay(&self, id: PathId) -> Option<(LongestStay, Arc<Round>)> {
+        let stay = self.stays.iter().find(|stay| stay.header.id == id)?;
+        Some((stay.clone(), Arc::clone(self.rounds.back()?)))
+    }
+
     /// The rounds in which the path may have been shown: the last one that began before its step, in
     /// whose window it may have come, and the next one, which may have found the chain there.
     fn around(&self, id: PathId) -> Result<Vec<Arc<Round>>, Gone> {

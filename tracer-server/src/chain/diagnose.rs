@@ -5,7 +5,8 @@ use common::{BatchBuilder, BatchLimits, Diagnostics, PathBatch, TileGrid, TileMa
 
 use super::Chain;
 use super::blocks::Blocks;
-use super::monitor::{Monitor, TileCounts};
+use super::monitor::{LongestStay, Monitor, TileCounts};
+use crate::path::Vertex;
 
 /// Arrivals that a tile must have seen before anything is said of it.
 const ENOUGH: u64 = 32;
@@ -36,7 +37,7 @@ pub(super) fn diagnose<'a, I: Iterator<Item = &'a Chain>>(chains: I) -> Option<D
         correlation_steps,
         effective_samples: if known { steps as f64 / correlation_steps } else { 0.0 },
         r_hat: scale_reduction(&moments, per_chain).unwrap_or(0.0),
-        longest: longest(&monitors),
+        longest: batch(&longest(monitors.iter().copied())),
     })
 }
 
@@ -112,15 +113,22 @@ impl Tile {
     }
 }
 
-/// The longest stays of different chains as a batch of whole paths, the longest first.
-fn longest(monitors: &[&Monitor]) -> Option<PathBatch> {
-    let mut stays: Vec<_> = monitors.iter().map(|monitor| monitor.longest()).collect();
+/// The longest stays of different chains, the longest first.
+pub(super) fn longest<'a>(monitors: impl Iterator<Item = &'a Monitor>) -> Vec<&'a LongestStay> {
+    let mut stays: Vec<_> = monitors.map(Monitor::longest).collect();
     stays.retain(|stay| !stay.vertices.is_empty());
     stays.sort_by_key(|stay| std::cmp::Reverse(stay.header.dwell));
+    stays.truncate(LONGEST);
+    stays
+}
+
+/// Stays as a batch of whole paths.
+fn batch(stays: &[&LongestStay]) -> Option<PathBatch> {
     let mut builder = BatchBuilder::new(BatchLimits { bytes: usize::MAX });
-    for stay in stays.into_iter().take(LONGEST) {
+    for stay in stays {
+        let vertices: Vec<_> = stay.vertices.iter().map(Vertex::record).collect();
         // The batch has no limit, so none is complete before its time.
-        drop(builder.push(&stay.header, &stay.vertices, None));
+        drop(builder.push(&stay.header, &vertices, None));
     }
     builder.finish()
 }

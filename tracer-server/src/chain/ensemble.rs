@@ -5,7 +5,8 @@ use std::thread;
 
 use common::{ChainId, Diagnostics, PathBatch};
 
-use super::diagnose::diagnose;
+use super::diagnose::{diagnose, longest};
+use super::monitor::LongestStay;
 use super::{
     Bootstrap, Chain, ChainStatistics, Checkpoint, PilotSettings, Prospect, Watch, explore,
 };
@@ -169,6 +170,11 @@ impl Ensemble {
     /// How well the chains explore; `None` without [`Ensemble::monitor`] or steps.
     pub fn diagnostics(&self) -> Option<Diagnostics> {
         diagnose(self.chains())
+    }
+
+    /// The longest stays of different chains, the longest first; none without [`Ensemble::monitor`].
+    pub fn longest_stays(&self) -> Vec<LongestStay> {
+        longest(self.chains().filter_map(Chain::monitor)).into_iter().cloned().collect()
     }
 
     /// Every chain takes `steps` steps. With a `window`, the states that each chain passes through

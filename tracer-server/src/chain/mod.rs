@@ -29,6 +29,8 @@ pub use pool::Pool;
 pub use statistics::{ChainStatistics, StrategyCounts};
 pub use watch::Watch;
 
+pub use monitor::LongestStay;
+
 use monitor::Monitor;
 
 /// What became of one step.

@@ -4,12 +4,12 @@
 //! one that is not. Its tables are written when a state is left, not at every step, and it allocates
 //! nothing after it was made.
 
-use common::{ChainId, PathHeader, TileGrid, VertexRecord};
+use common::{ChainId, PathHeader, TileGrid};
 use glam::DVec2;
 
 use super::Chain;
 use super::blocks::Blocks;
-use crate::path::{MAX_VERTICES, Path};
+use crate::path::{MAX_VERTICES, Path, Vertex};
 
 /// Chains whose memory is measured: the first ones, since so many know it as well as all.
 const REMEMBERED: u32 = 16;
@@ -27,13 +27,15 @@ pub(super) struct TileCounts {
     pub(super) acceptance: f64,
 }
 
-/// The state at which a chain stayed longest.
+/// The state at which a chain stayed longest: all that is needed to make it again.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct LongestStay {
+pub struct LongestStay {
     /// What is known of the path; its dwell is the length of the stay so far.
-    pub(super) header: PathHeader,
-    /// The path.
-    pub(super) vertices: Vec<VertexRecord>,
+    pub header: PathHeader,
+    /// The path's vertices.
+    pub vertices: Vec<Vertex>,
+    /// Its film point.
+    pub film: DVec2,
 }
 
 /// Looks over one chain's shoulder.
@@ -72,7 +74,7 @@ impl Monitor {
             tiles: vec![TileCounts::default(); grid.len()],
             blocks: (id.0 < REMEMBERED).then(Box::default),
             settled: 0,
-            longest: LongestStay { header: PathHeader::default(), vertices },
+            longest: LongestStay { vertices, ..LongestStay::default() },
             tile: 0,
             log_luminance: 0.0,
             steps: 0,
@@ -126,7 +128,9 @@ impl Monitor {
         if dwell > self.longest.header.dwell {
             self.longest.header = chain.header();
             self.longest.header.dwell = dwell;
-            chain.current().record_into(&mut self.longest.vertices);
+            self.longest.vertices.clear();
+            self.longest.vertices.extend_from_slice(chain.current().vertices());
+            self.longest.film = chain.current().film();
         }
     }
 

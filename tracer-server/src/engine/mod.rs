@@ -98,6 +98,11 @@ impl Reporter {
         self.film_at = None;
     }
 
+    /// True when counts and diagnostics are due.
+    fn is_due(&self) -> bool {
+        self.statistics_at.elapsed() >= STATISTICS_INTERVAL
+    }
+
     /// Publishes what is due of an epoch.
     fn report(&mut self, scene: &Scene, ensemble: &Ensemble, epoch: u32, hub: &Hub) {
         let now = Instant::now();
@@ -106,7 +111,7 @@ impl Reporter {
             let rest = FILM_INTERVAL.max(now.elapsed() * FILM_COST);
             self.film_at = Some(now + rest);
         }
-        if now - self.statistics_at >= STATISTICS_INTERVAL {
+        if self.is_due() {
             let interval = now - self.counted_at;
             let steps = ensemble.steps().saturating_sub(self.steps_at);
             let rate = steps as f64 / interval.as_secs_f64().max(f64::MIN_POSITIVE);

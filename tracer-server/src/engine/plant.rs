@@ -114,6 +114,10 @@ impl<'a> Plant<'a> {
         for batch in batches {
             self.hub.publish_paths(batch);
         }
+        if self.reporter.is_due() {
+            // Kept before they are told of, for the same reason.
+            self.archive.keep(self.ensemble.longest_stays());
+        }
         self.reporter.report(self.scene, &self.ensemble, self.epoch, self.hub);
     }
 

@@ -16,8 +16,8 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use common::{
-    Author, ExplorerCommand, ExplorerState, FocusOutcome, FocusStep, Notice, OrderReply, Pace,
-    SkipTo, StrategyId, StrategySet,
+    Author, DetailReply, ExplorerCommand, ExplorerState, FocusOutcome, FocusStep, Notice,
+    OrderReply, Pace, PathId, SkipTo, StrategyId, StrategySet,
 };
 use tracing::warn;
 
@@ -146,6 +146,7 @@ impl Guide {
             };
             match mail {
                 Ok(ExplorerMail::Order(order)) => self.follow(order),
+                Ok(ExplorerMail::Inspect(session, path)) => self.inspect(session, path),
                 Ok(ExplorerMail::Wake) => self.wake(),
                 Err(RecvTimeoutError::Timeout) => self.go(),
                 Err(RecvTimeoutError::Disconnected) => return,
@@ -170,6 +171,11 @@ impl Guide {
         }
         let reply = OrderReply { request, error: done.err() };
         self.hub.tell(session, Notice::Reply(reply));
+    }
+
+    fn inspect(&self, session: u64, path: PathId) {
+        let found = self.walker.detail(path, &self.archive);
+        self.hub.tell(session, Notice::Detail(Box::new(DetailReply { path, found })));
     }
 
     fn obey(&mut self, command: ExplorerCommand) -> Result<(), String> {

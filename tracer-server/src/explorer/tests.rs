@@ -68,6 +68,31 @@ fn every_path_that_was_shown_is_made_again_exactly() {
 }
 
 #[test]
+fn the_longest_stays_are_kept_although_they_were_not_shown() {
+    let scene = scene();
+    let (archive, shown, mut ensemble) = watched(&scene, 1, usize::MAX);
+    ensemble.monitor();
+    drop(ensemble.advance(&scene, 2000, None));
+    let tracer = Tracer::new(&scene);
+    let mut film = Film::new(scene.camera().width, scene.camera().height);
+    let longest = ensemble.diagnostics().and_then(|d| d.longest).expect("stays");
+    let ids: Vec<PathId> = longest.headers().map(|header| header.id).collect();
+    let is_shown = |id| shown.iter().any(|batch| batch.headers().any(|header| header.id == id));
+    assert!(ids.len() > 4 && ids.iter().any(|&id| !is_shown(id)), "not all were shown: {ids:?}");
+    let before = ids.iter().filter(|&&id| archive.path(&tracer, id, &mut film).is_ok()).count();
+    assert!(before < ids.len(), "some cannot be found");
+    for _ in 0..3 {
+        archive.keep(ensemble.longest_stays());
+    }
+    let mut reader = longest.reader();
+    while let Some(view) = reader.next() {
+        let (path, _) = archive.path(&tracer, view.header.id, &mut film).expect("it is kept");
+        assert_eq!(records(&path), view.vertices, "{}", view.header.id);
+        assert_eq!(path.film().as_vec2().to_array(), view.header.film, "{}", view.header.id);
+    }
+}
+
+#[test]
 fn what_was_not_shown_is_told_to_be_gone() {
     let scene = scene();
     let tracer = Tracer::new(&scene);

@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use common::{
-    ChainId, FilmFrame, FocusOutcome, FocusPath, FocusStep, PathId, RatioFactors, Seed, StrategyId,
-    StrategySet, VertexRecord,
+    ChainId, FilmFrame, FocusOutcome, FocusPath, FocusStep, PathDetail, PathId, RatioFactors, Seed,
+    StrategyId, StrategySet, VertexRecord,
 };
 
 use crate::chain::{Archive, Chain, Checkpoint, Outcome, Round, Step};
@@ -112,24 +112,34 @@ impl Walker {
                 .newest_path()
                 .ok_or("no path has been shown yet; watch the chains and try again")?,
         };
-        let scene = Tracer::new(&self.scene);
-        let (path, round) = if origin.chain == ChainId::EXPLORER {
-            let known = self.memory.iter().find(|checkpoint| checkpoint.id() == origin);
-            let walk = self.walk.as_ref();
-            let (checkpoint, walk) = known.zip(walk).ok_or_else(|| {
-                format!("the path {origin} is gone: the explorer keeps its last {MEMORY} paths")
-            })?;
-            let chain = Chain::resume(&scene, checkpoint, &walk.mixture)
-                .map_err(|failure| format!("the path {origin} is no path: {}", failure.name()))?;
-            (chain.current().clone(), Arc::clone(&walk.round))
-        } else {
-            // The explorer's own film must not see steps that only find a path, or find none.
-            let mut scratch = Film::new(self.film.width(), self.film.height());
-            archive.path(&scene, origin, &mut scratch).map_err(|gone| gone.to_string())?
-        };
+        let (path, round) = self.path(origin, archive)?;
         let mixture = restricted(&round.mixture, self.allowed)?;
         self.begin(path, origin, round, mixture);
         Ok(self.arrived())
+    }
+
+    /// The path of that name, made again, with the strategies of its time; or why it is gone.
+    fn path(&self, id: PathId, archive: &Archive) -> Result<(Path, Arc<Round>), String> {
+        let scene = Tracer::new(&self.scene);
+        if id.chain == ChainId::EXPLORER {
+            let known = self.memory.iter().find(|checkpoint| checkpoint.id() == id);
+            let (checkpoint, walk) = known.zip(self.walk.as_ref()).ok_or_else(|| {
+                format!("the path {id} is gone: the explorer keeps its last {MEMORY} paths")
+            })?;
+            let chain = Chain::resume(&scene, checkpoint, &walk.mixture)
+                .map_err(|failure| format!("the path {id} is no path: {}", failure.name()))?;
+            return Ok((chain.current().clone(), Arc::clone(&walk.round)));
+        }
+        // The explorer's own film must not see steps that only find a path, or find none.
+        let mut scratch = Film::new(self.film.width(), self.film.height());
+        archive.path(&scene, id, &mut scratch).map_err(|gone| gone.to_string())
+    }
+
+    /// The numbers behind the path of that name, or why it is gone.
+    pub(super) fn detail(&self, id: PathId, archive: &Archive) -> Result<PathDetail, String> {
+        let (path, _) = self.path(id, archive)?;
+        path.detail(&Tracer::new(&self.scene))
+            .map_err(|failure| format!("the path {id} is no path: {}", failure.name()))
     }
 
     /// Restricts which strategies may act; the path stays, in an epoch of its own.

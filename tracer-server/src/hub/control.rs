@@ -101,6 +101,14 @@ fn notice_bytes(notice: &Notice) -> usize {
         }
         Notice::Chains(state) => state.change.len() + size_of_val(state.weights.as_slice()),
         Notice::Reply(reply) => reply.error.as_ref().map_or(0, String::len),
+        Notice::Detail(reply) => match &reply.found {
+            Ok(detail) => {
+                size_of_val(detail.vertices.as_slice())
+                    + size_of_val(detail.geometry.as_slice())
+                    + size_of_val(detail.reciprocals.as_slice())
+            }
+            Err(why) => why.len(),
+        },
         Notice::Explorer(_) | Notice::Lease(_) => 0,
     }
 }

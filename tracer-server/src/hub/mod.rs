@@ -263,7 +263,7 @@ impl Hub {
             Notice::Presence(presence) => registry.presence = Some(presence.clone()),
             Notice::Chains(state) => registry.chains = Some(state.clone()),
             Notice::Explorer(state) => registry.explorer = Some(state.clone()),
-            Notice::Lease(_) | Notice::Reply(_) => {}
+            Notice::Lease(_) | Notice::Reply(_) | Notice::Detail(_) => {}
         }
         for lane in &registry.lanes {
             lane.push_notice(notice.clone());

@@ -13,7 +13,7 @@ use crate::scene::fixtures::{Fixture, bumpy_room, diffuse_room, every_light, spe
 use crate::scene::{Glow, Tracer};
 
 /// Paths of bidirectional samples, one from each sample that has any.
-fn sample_paths(scene: &Tracer<'_>, samples: u64) -> Vec<Path> {
+pub(super) fn sample_paths(scene: &Tracer<'_>, samples: u64) -> Vec<Path> {
     let mut sampler = BidirectionalSampler::new(scene);
     let mut rng = Rng::new(5, Stream::Laboratory, 0);
     let mut paths = Vec::new();

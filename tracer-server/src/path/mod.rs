@@ -9,6 +9,7 @@
 mod assemble;
 mod bidirectional;
 mod class;
+mod detail;
 mod failure;
 mod numbers;
 mod record;

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use common::{
-    CompiledFilter, Filter, FilterError, FilterReply, FilterScene, Notice, Order, OrderReply, Role,
-    Welcome,
+    CompiledFilter, DetailReply, Filter, FilterError, FilterReply, FilterScene, Notice, Order,
+    OrderReply, PathId, Role, Welcome,
 };
 use proto::v1::{self, TracerMessage, ViewerMessage, tracer_message::Kind};
 use proto::{Hello, NumberedOrder, TracerEvent, ViewerEvent, WantedFilter, WireError};
@@ -230,6 +230,10 @@ impl Session {
                 self.house.room.show(self.number(), appearance);
                 Heard::Work
             }
+            Ok(ViewerEvent::Inspect(path)) => {
+                self.inspect(path);
+                Heard::Work
+            }
             Ok(ViewerEvent::Unknown) => Heard::Fine,
             Ok(ViewerEvent::Goodbye(reason)) => {
                 let reason = reason.chars().filter(|c| !c.is_control()).collect();
@@ -274,6 +278,14 @@ impl Session {
             Order::Lease(_) => Ok(()),
         };
         handed.map_err(|error| error.to_string())
+    }
+
+    /// Asks for the numbers behind a path. Where the question does not get through, this answers.
+    fn inspect(&self, path: PathId) {
+        if let Err(error) = self.house.steering.inspect(self.number(), path) {
+            let found = Err(error.to_string());
+            self.subscription.notice(Notice::Detail(Box::new(DetailReply { path, found })));
+        }
     }
 
     fn reply(&self, request: u32, error: Option<String>) {

@@ -7,7 +7,7 @@ mod selecting;
 
 use std::time::{Duration, Instant};
 
-use common::{Appearance, Gaze};
+use common::{Appearance, Gaze, Notice};
 use egui_wgpu::RenderState;
 
 use crate::backlog::Backlog;
@@ -183,6 +183,7 @@ impl Viewer {
             let must_wait = match command {
                 Command::Camera(_) | Command::Path(PathCommand::Show(..)) => self.model.is_none(),
                 Command::Path(PathCommand::Vertex(_)) => self.selection.is_none(),
+                Command::Path(PathCommand::Stay(_)) => self.longest_stays().is_none(),
                 Command::Order(_) | Command::Path(_) => self.store.is_empty(),
                 Command::Image(ImageCommand::Save(_) | ImageCommand::Tev(_)) => {
                     self.darkroom.film.size() == [0, 0]
@@ -304,7 +305,12 @@ impl Viewer {
             }
         }
         let remarks = self.status.steering.remark_count;
-        delivery.notices.into_iter().for_each(|notice| self.status.steering.take(notice));
+        for notice in delivery.notices {
+            match notice {
+                Notice::Detail(reply) => self.learn(*reply),
+                notice => self.status.steering.take(notice),
+            }
+        }
         if self.status.steering.remark_count != remarks
             && let Some(remark) = self.status.steering.remarks.back().cloned()
         {
@@ -440,13 +446,7 @@ impl Viewer {
             Command::Layout(command) => self.settings.layout.apply(command),
             Command::Desk(command) => self.go_beyond(command),
             Command::Order(order) => self.send(order),
-            Command::Path(PathCommand::Pick(aim)) => self.pick(aim),
-            Command::Path(PathCommand::Show(header, vertices)) => {
-                self.selection = Some(Selection::new(*header, vertices));
-            }
-            Command::Path(PathCommand::Deselect) => self.selection = None,
-            Command::Path(PathCommand::Stay(rank)) => self.select_stay(rank),
-            Command::Path(PathCommand::Vertex(step)) => self.look_at_vertex(step),
+            Command::Path(command) => self.select(command),
             Command::Play(command) => self.play(command),
             Command::Scrub(number) => self.scrub = number,
             // What these change is not what they can undo.

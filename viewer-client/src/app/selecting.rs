@@ -1,43 +1,51 @@
-//! Which path is looked at, and which of its vertices.
+//! Which path is looked at, which of its vertices, and the numbers behind it.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use common::{DetailReply, PathBatch};
 
 use super::Viewer;
-use crate::command::{CameraCommand, VertexStep};
-use crate::pick::{self, Aim, Pickable};
-use crate::selection::Selection;
+use crate::command::{CameraCommand, PathCommand, VertexStep};
+use crate::pick::Aim;
+use crate::selection::{Detail, Selection, Sight};
 
 impl Viewer {
+    /// Follows a command about the path that is looked at.
+    pub(super) fn select(&mut self, command: PathCommand) {
+        match command {
+            PathCommand::Pick(aim) => self.pick(aim),
+            PathCommand::Deselect => self.selection = None,
+            PathCommand::Stay(rank) => self.select_stay(rank),
+            PathCommand::Explored => self.select_explored(),
+            PathCommand::Show(header, vertices) => {
+                self.selection = Some(Selection::new(*header, vertices));
+            }
+            PathCommand::Vertex(step) => self.look_at_vertex(step),
+        }
+        self.inspect();
+    }
+
     /// Selects the path under the cursor; where that is the selected one, the next one there.
-    pub(super) fn pick(&mut self, aim: Aim) {
-        let lens = self.camera.lens(1.0);
-        let scene = &self.settings.scene;
-        let clip = scene.clip_plane(self.camera.bounds());
-        let mesh = self.model.as_ref().map(|model| &model.mesh).filter(|_| scene.covers());
-        let surface = mesh
-            .and_then(|mesh| pick::surface_at(mesh, &lens, aim.at, !scene.cutaway, clip))
-            .map(|(depth, _)| depth);
-        let newest = Pickable { newest: self.settings.cloud.shown as usize, clip };
-        let hits = pick::paths_at(&self.store, &lens, aim, newest, surface);
+    fn pick(&mut self, aim: Aim) {
+        let sight = Sight {
+            store: &self.store,
+            lens: &self.camera.lens(1.0),
+            bounds: self.camera.bounds(),
+            scene: &self.settings.scene,
+            mesh: self.model.as_ref().map(|model| &model.mesh),
+            newest: self.settings.cloud.shown as usize,
+        };
+        let found = sight.paths(aim);
         let again = self.pointed.is_some_and(|before| before.is_near(aim));
         let selected = self.selection.as_ref().filter(|_| again).map(|s| s.header.id);
-        let found: Vec<Selection> = hits
-            .iter()
-            .filter_map(|hit| {
-                let page = self.store.page(hit.page)?;
-                let path = page.paths().get(hit.index)?;
-                Some(Selection::new(path.header, page.vertices(path).to_vec()))
-            })
-            .collect();
         let last = found.iter().position(|s| Some(s.header.id) == selected);
         let next = last.map_or(0, |index| (index + 1) % found.len());
-        let count = found.len();
         self.selection = found.into_iter().nth(next);
-        if let Some(selection) = &mut self.selection {
-            selection.place = (next + 1, count);
-        }
         self.pointed = Some(aim);
     }
 
-    pub(super) fn look_at_vertex(&mut self, step: VertexStep) {
+    fn look_at_vertex(&mut self, step: VertexStep) {
         let Some(selection) = &mut self.selection else { return };
         selection.go(step);
         let vertex = selection.vertex.and_then(|index| selection.vertices.get(index));
@@ -48,9 +56,8 @@ impl Viewer {
     }
 
     /// Selects one of the paths at which chains stayed longest; the longest has rank 0.
-    pub(super) fn select_stay(&mut self, rank: u8) {
-        let diagnostics = self.status.statistics.as_ref().and_then(|s| s.diagnostics.as_deref());
-        let Some(batch) = diagnostics.and_then(|d| d.longest.as_ref()) else { return };
+    fn select_stay(&mut self, rank: u8) {
+        let Some(batch) = self.longest_stays() else { return };
         let mut reader = batch.reader();
         for _ in 0..rank {
             reader.next();
@@ -59,5 +66,93 @@ impl Viewer {
         let place = (usize::from(rank) + 1, batch.len());
         let selection = Selection::new(path.header, path.vertices.to_vec());
         self.selection = Some(Selection { place, ..selection });
+    }
+
+    /// The paths at which chains stayed longest, once the daemon has told of some.
+    pub(super) fn longest_stays(&self) -> Option<&PathBatch> {
+        let statistics = self.status.statistics.as_ref()?;
+        statistics.diagnostics.as_deref()?.longest.as_ref()
+    }
+
+    /// Selects the path from which the step of the explorer that is shown was tried.
+    fn select_explored(&mut self) {
+        let focus = &self.status.steering.focus;
+        let before = focus.moment(self.scrub).map(|moment| &moment.before);
+        if let Some(path) = before.or_else(|| focus.current()) {
+            self.selection = Some(Selection::new(path.header, path.vertices.clone()));
+        }
+    }
+
+    /// Asks for the numbers behind the selected path, once.
+    fn inspect(&mut self) {
+        let Some(selection) = &mut self.selection else { return };
+        if selection.detail != Detail::Unasked {
+            return;
+        }
+        let missing = |why: &str| Detail::Missing(why.to_owned());
+        selection.detail = match &self.link {
+            _ if self.playback.is_some() => missing("A file of paths does not tell them."),
+            Some(link) if link.inspect(selection.header.id) => Detail::Asked(Instant::now()),
+            _ => missing("There is no daemon to ask; select the path again once there is."),
+        };
+    }
+
+    /// Keeps the numbers behind the selected path.
+    pub(super) fn learn(&mut self, DetailReply { path, found }: DetailReply) {
+        let Some(selection) = self.selection.as_mut().filter(|s| s.header.id == path) else {
+            return;
+        };
+        selection.detail = match found {
+            Ok(detail) if detail.vertices.len() == selection.vertices.len() => {
+                Detail::Known(Arc::new(detail))
+            }
+            Ok(_) => Detail::Missing("The daemon told those of another path.".to_owned()),
+            Err(why) => Detail::Missing(why),
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use common::{Notice, PathDetail, PathId, VertexDetail};
+
+    use super::*;
+    use crate::connection::Delivery;
+    use crate::status::Status;
+    use crate::synthetic::delivery;
+
+    #[test]
+    fn numbers_are_kept_with_the_path_that_they_are_about() {
+        let mut viewer = Viewer::new(Status::new("here".to_owned(), false));
+        viewer.take(delivery(&[&[[-400.0, 0.0, 0.0], [400.0, 0.0, 0.0]]]));
+        viewer.receive();
+        let batch = crate::synthetic::batch(&[&[[-400.0, 0.0, 0.0], [400.0, 0.0, 0.0]]]);
+        let mut reader = batch.reader();
+        let path = reader.next().expect("a path");
+        viewer.selection = Some(Selection::new(path.header, path.vertices.to_vec()));
+        viewer.apply("path vertex 1".parse().expect("a command"));
+        let detail = |viewer: &Viewer| viewer.selection.as_ref().map(|s| s.detail.clone());
+        assert!(
+            matches!(detail(&viewer), Some(Detail::Missing(why)) if why.contains("no daemon")),
+            "there is nobody to ask"
+        );
+        let mut told = |path: PathId, found| {
+            let reply = Notice::Detail(Box::new(DetailReply { path, found }));
+            viewer.take(Delivery { notices: [reply].into(), ..Delivery::default() });
+            detail(&viewer)
+        };
+        let numbers = |count| PathDetail {
+            vertices: vec![VertexDetail::default(); count],
+            geometry: vec![1.0; count - 1],
+            reciprocals: vec![1.0; count],
+        };
+        let other = PathId { step: 99, ..PathId::default() };
+        assert!(matches!(told(other, Ok(numbers(3))), Some(Detail::Missing(_))), "of another path");
+        let known = told(PathId::default(), Ok(numbers(3)));
+        assert_eq!(known, Some(Detail::Known(Arc::new(numbers(3)))), "its own");
+        let odd = told(PathId::default(), Ok(numbers(4)));
+        assert!(matches!(odd, Some(Detail::Missing(_))), "of other vertices");
+        let gone = told(PathId::default(), Err("it is gone".to_owned()));
+        assert_eq!(gone, Some(Detail::Missing("it is gone".to_owned())), "why");
     }
 }

@@ -165,7 +165,7 @@ mod tests {
         image forget\nimage save out.png\nimage tev 127.0.0.1:14158\n\
         panel statistics off\nfold image on\narrange filter before image\nwidth left 300\nusual\n\
         mouse blender\ntheme light\nhelp toggle\nkeys classic\nseen on\npalette on\nhint off\nscale 125\n\
-        path pick 0.1 -0.2 0.01\npath stay 2\n\
+        path pick 0.1 -0.2 0.01\npath stay 2\npath explored\n\
         path show 3.0.1024 1 7 32 0.5 0.25 0.75 1.5 1 0.5 0 1 2.5 -3 0 32767 0 0 1 4 4 5 6 0 -32768 6 0 0 4294967295\n\
         path none\npath vertex 3\nplay toggle\nplay rate 0.5\nplay to 7\n\
         play by -2\nplay accepted\n\

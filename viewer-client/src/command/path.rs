@@ -17,6 +17,8 @@ pub enum PathCommand {
     Stay(u8),
     /// Selects this path, whether or not it is among those that are held.
     Show(Box<PathHeader>, Vec<VertexRecord>),
+    /// Selects the explorer's path, before the step that is shown.
+    Explored,
     /// Selects none.
     Deselect,
     /// Brings a vertex of it into the middle of the view.
@@ -50,6 +52,7 @@ pub(super) const FORMS: &[Form] = &[
         "select the path at tangents from the view direction; again, the next one there",
     ),
     ("path stay RANK", "select a path at which a chain stayed long; the longest stay is 0"),
+    ("path explored", "select the explorer's path, before the step that is shown"),
     ("path show ID NUMBERS", "select a path that is written out, as in a link to a view"),
     ("path none", "select no path"),
     ("path vertex next|previous|INDEX", "look at a vertex of the selected path"),
@@ -61,6 +64,7 @@ impl fmt::Display for PathCommand {
             Self::Pick(Aim { at: [x, y], reach }) => write!(f, "pick {x} {y} {reach}"),
             Self::Stay(rank) => write!(f, "stay {rank}"),
             Self::Show(header, vertices) => show(f, header, vertices),
+            Self::Explored => write!(f, "explored"),
             Self::Deselect => write!(f, "none"),
             Self::Vertex(step) => write!(f, "vertex {step}"),
         }
@@ -134,6 +138,7 @@ pub(super) fn parse(words: &mut Words<'_>) -> Result<PathCommand, CommandError> 
         }),
         "stay" => PathCommand::Stay(words.count("RANK", 0..=255)? as u8),
         "show" => read_shown(words)?,
+        "explored" => PathCommand::Explored,
         "none" => PathCommand::Deselect,
         "vertex" => PathCommand::Vertex(match words.peek() {
             Some("next") => words.next("vertex").map(|_| VertexStep::Next)?,

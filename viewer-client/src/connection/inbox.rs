@@ -141,7 +141,9 @@ impl Delivery {
 
     /// Puts in a notice. A state replaces the one before it that nobody has looked at.
     fn push_notice(&mut self, notice: Notice) {
-        let is_state = |notice: &Notice| !matches!(notice, Notice::Lease(_) | Notice::Reply(_));
+        let is_state = |notice: &Notice| {
+            matches!(notice, Notice::Presence(_) | Notice::Explorer(_) | Notice::Chains(_))
+        };
         if is_state(&notice) {
             let same = |old: &Notice| {
                 std::mem::discriminant(old) == std::mem::discriminant(&notice) && is_state(old)

@@ -19,7 +19,7 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use common::{Appearance, Order, Role};
+use common::{Appearance, Order, PathId, Role};
 use proto::{NumberedOrder, ReceivedScene, TracerEvent, ViewerEvent, WantedFilter};
 use tokio::sync::{Notify, mpsc};
 use tokio::task::JoinSet;
@@ -138,6 +138,11 @@ impl Link {
     /// Shows the others something of this viewer.
     pub fn show(&self, appearance: Appearance) -> bool {
         self.say(ViewerEvent::Appearance(appearance))
+    }
+
+    /// Asks for the numbers behind a path. False where too much waits to be sent.
+    pub fn inspect(&self, path: PathId) -> bool {
+        self.say(ViewerEvent::Inspect(path))
     }
 
     fn say(&self, event: ViewerEvent) -> bool {

@@ -13,6 +13,7 @@ mod filter;
 mod heading;
 mod help;
 mod hint;
+mod hover;
 mod image;
 mod menu;
 mod notice;
@@ -73,12 +74,12 @@ pub fn all() -> Vec<Placed> {
         (Slot::Section(PanelName::Filter), Box::new(filter::FilterPanel::default())),
         (Slot::Section(PanelName::Scene), Box::new(scene::Scene)),
         (Slot::Section(PanelName::Image), Box::new(image::ImagePanel::default())),
-        (Slot::Section(PanelName::Path), Box::new(path::PathPanel)),
+        (Slot::Section(PanelName::Path), Box::new(path::PathPanel::default())),
         (Slot::Section(PanelName::Explorer), Box::new(explorer::ExplorerPanel::default())),
         (Slot::Section(PanelName::Playback), Box::new(playback::PlaybackPanel)),
         (Slot::Section(PanelName::Statistics), Box::new(statistics::StatisticsPanel)),
         (Slot::Section(PanelName::Diagnostics), Box::new(diagnostics::DiagnosticsPanel)),
-        (Slot::Centre, Box::new(viewport::Viewport)),
+        (Slot::Centre, Box::new(viewport::Viewport::default())),
         (Slot::Overlay, Box::new(hint::Hint)),
         (Slot::Overlay, Box::new(notice::NoticePanel)),
         (Slot::Overlay, Box::new(help::Help)),
@@ -88,6 +89,7 @@ pub fn all() -> Vec<Placed> {
 
 /// Lays out all panels.
 pub fn show(panels: &mut [Placed], ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    hover::begin(ui.ctx());
     let bar = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(12, 5));
     let side = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(12, 8));
     for (slot, panel) in panels.iter_mut() {
@@ -115,6 +117,7 @@ pub fn show(panels: &mut [Placed], ui: &mut Ui, world: &World<'_>, commands: &mu
             Slot::Top | Slot::Bottom | Slot::Section(_) => {}
         }
     }
+    hover::end(ui.ctx());
 }
 
 /// Height of the room below the last section, in points.
@@ -141,8 +144,8 @@ fn one_side(
         WindowSide::Left => egui::Panel::left(id),
         WindowSide::Right => egui::Panel::right(id),
     };
-    // The view keeps a third of a small window.
-    let most = (0.45 * ui.ctx().content_rect().width()).max(f32::from(*WIDTHS.start()));
+    // A small window does not belong to one side alone.
+    let most = (0.55 * ui.ctx().content_rect().width()).max(f32::from(*WIDTHS.start()));
     let range = f32::from(*WIDTHS.start())..=most.min(f32::from(*WIDTHS.end()));
     let panel = panel.frame(frame).default_size(f32::from(width)).size_range(range);
     let shown = panel.show(ui, |ui| sections(ui, (panels, &names), side, world, commands));

@@ -4,7 +4,8 @@ use common::{Statistics, StrategyStatistics};
 use egui::{Align, Color32, Label, Layout, RichText, Sense, Ui, vec2};
 
 use super::Panel;
-use super::widgets::{dot, empty_state, reading, sparkline};
+use super::hover::{self, Pointed};
+use super::widgets::{dot, empty_state, mark, reading, sparkline};
 use crate::command::Command;
 use crate::format;
 use crate::theme;
@@ -109,6 +110,11 @@ fn strategy_row(ui: &mut Ui, world: &World<'_>, index: usize, strategy: &Strateg
             });
         })
         .response;
+    if response.contains_pointer() {
+        hover::point(ui.ctx(), Pointed::Strategy(index));
+    } else if hover::is_strategy(ui.ctx(), index) {
+        mark(ui, response.rect);
+    }
     response.on_hover_ui(|ui| fate(ui, world, name, strategy));
 }
 

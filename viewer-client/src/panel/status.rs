@@ -150,7 +150,13 @@ fn waiting_where(statistics: &Statistics) -> String {
     format!("What waits at the daemon for this viewer{lines}")
 }
 
+/// A figure, where there is room for it.
 fn figure(ui: &mut Ui, name: &str, value: &str, tip: &str) {
+    const LETTER: f32 = 7.0;
+    let letters = name.chars().count() + value.chars().count();
+    if ui.available_width() < LETTER * letters as f32 + 24.0 {
+        return;
+    }
     ui.add_space(4.0);
     ui.add(Label::new(RichText::new(value).monospace()).selectable(false)).on_hover_text(tip);
     ui.add(Label::new(RichText::new(name).weak()).selectable(false)).on_hover_text(tip);

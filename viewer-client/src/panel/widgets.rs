@@ -4,8 +4,8 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 
 use egui::{
-    Align, Color32, ComboBox, Label, Layout, Response, RichText, Sense, Slider, Ui, WidgetText,
-    pos2, vec2,
+    Align, Color32, ComboBox, Label, Layout, Rect, Response, RichText, Sense, Slider, Stroke,
+    StrokeKind, Ui, WidgetText, pos2, vec2,
 };
 
 use crate::command::Switch;
@@ -126,6 +126,12 @@ pub(super) fn dot(ui: &mut Ui, color: Color32) -> Response {
     response
 }
 
+/// Marks a row of which another panel tells, too.
+pub(super) fn mark(ui: &Ui, row: Rect) {
+    let stroke = Stroke::new(1.0, ui.visuals().strong_text_color());
+    ui.painter().rect_stroke(row.expand2(vec2(3.0, 0.0)), 3.0, stroke, StrokeKind::Outside);
+}
+
 /// A text in the middle that says why there is nothing here, and what to do.
 pub(super) fn empty_state(ui: &mut Ui, title: &str, text: &str) {
     ui.vertical_centered(|ui| {
@@ -155,9 +161,9 @@ pub(super) fn sparkline(ui: &mut Ui, values: impl ExactSizeIterator<Item = f32>,
         if let [a, b] = *pair {
             let foot = |p: egui::Pos2| pos2(p.x, rect.bottom());
             let shape =
-                egui::Shape::convex_polygon(vec![a, b, foot(b), foot(a)], fill, egui::Stroke::NONE);
+                egui::Shape::convex_polygon(vec![a, b, foot(b), foot(a)], fill, Stroke::NONE);
             ui.painter().add(shape);
         }
     }
-    ui.painter().line(curve, egui::Stroke::new(1.3, theme::ACCENT));
+    ui.painter().line(curve, Stroke::new(1.3, theme::ACCENT));
 }

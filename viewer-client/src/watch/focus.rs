@@ -10,7 +10,7 @@ use common::{
 use proto::{NumberedOrder, TracerEvent, ViewerEvent};
 use serde_json::{Value, json};
 
-use super::Names;
+use super::{Names, inspect};
 
 /// Statistics that come before orders are given although no path has come: about a second of them.
 const PATIENCE: u32 = 3;
@@ -206,8 +206,8 @@ pub(super) fn notice_line(notice: &Notice) -> Option<String> {
             }
         }
         Notice::Reply(OrderReply { request, error: None }) => format!("order {request}  done"),
-        // The end says why.
-        Notice::Reply(OrderReply { error: Some(_), .. }) => return None,
+        // The end says why; and nobody has asked.
+        Notice::Reply(OrderReply { error: Some(_), .. }) | Notice::Detail(_) => return None,
     })
 }
 
@@ -257,6 +257,12 @@ pub(super) fn notice_json(notice: &Notice) -> Value {
         Notice::Reply(OrderReply { request, error }) => {
             json!({ "event": "reply", "request": request, "error": error })
         }
+        Notice::Detail(reply) => match &reply.found {
+            Ok(detail) => inspect::detail_json(reply.path, detail),
+            Err(error) => {
+                json!({ "event": "path detail", "path": reply.path.to_string(), "error": error })
+            }
+        },
     }
 }
 

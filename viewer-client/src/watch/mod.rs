@@ -1,6 +1,7 @@
 //! `viewer-client watch`: what a daemon sends, as lines of text.
 
 mod focus;
+mod inspect;
 
 use std::io::{self, Write as _};
 
@@ -30,6 +31,9 @@ async fn watch(args: &WatchArgs) -> anyhow::Result<()> {
     let name = own_name("Lvis watch");
     let greeting = Greeting { name, role, filter, focus: args.focus, ..Greeting::default() };
     let mut session = Session::open(&peer, greeting).await?;
+    if let Some(path) = args.inspect {
+        return inspect::print(session, path, args.json).await;
+    }
     let mut names = Names { focus: args.focus, ..Names::default() };
     let mut script = Script::new(&args.order);
     let mut counted = 0;

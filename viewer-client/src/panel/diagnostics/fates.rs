@@ -8,7 +8,8 @@ use egui::{
 };
 
 use crate::format;
-use crate::panel::widgets::dot;
+use crate::panel::hover::{self, Pointed};
+use crate::panel::widgets::{dot, mark};
 use crate::theme;
 use crate::world::World;
 
@@ -35,7 +36,7 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, statistics: &Statistics) {
             *failures.entry(usize::from(failure.reason)).or_insert(0) += failure.count;
         }
         let parts = parts(ui, world, index, strategy);
-        ui.horizontal(|ui| {
+        let row = ui.horizontal(|ui| {
             let size = vec2(NAMES, HEIGHT);
             ui.allocate_ui_with_layout(
                 size,
@@ -49,6 +50,11 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, statistics: &Statistics) {
             );
             bar(ui, &parts).on_hover_ui(|ui| words(ui, &parts, strategy.proposed));
         });
+        if row.response.contains_pointer() {
+            hover::point(ui.ctx(), Pointed::Strategy(index));
+        } else if hover::is_strategy(ui.ctx(), index) {
+            mark(ui, row.response.rect);
+        }
     }
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;

@@ -2,9 +2,12 @@
 
 use common::Diagnostics;
 use egui::Ui;
-use egui_plot::{GridMark, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, Points};
+use egui_plot::{
+    GridMark, HLine, HoverPosition, ItemId, Line, LineStyle, Plot, PlotPoints, Points,
+};
 
 use crate::format;
+use crate::panel::hover::{self, Pointed};
 use crate::theme;
 use crate::world::World;
 
@@ -70,7 +73,11 @@ pub(super) fn acceptance(ui: &mut Ui, world: &World<'_>) {
         )),
         HoverPosition::Elsewhere { .. } => None,
     };
-    plot("acceptance")
+    let marked = match hover::pointed(ui.ctx()) {
+        Some(Pointed::Strategy(index)) => Some(index),
+        _ => None,
+    };
+    let shown = plot("acceptance")
         .include_y(0.0)
         .include_y(1.0)
         .y_grid_spacer(halves)
@@ -82,10 +89,18 @@ pub(super) fn acceptance(ui: &mut Ui, world: &World<'_>) {
             for (index, (name, points)) in lines.into_iter().enumerate() {
                 let style =
                     if index < SOLID { LineStyle::Solid } else { LineStyle::dashed_loose() };
-                let line = Line::new(name, PlotPoints::from(points));
-                plot.line(line.color(theme::strategy_color(index)).width(1.6).style(style));
+                let width = if marked == Some(index) { 3.4 } else { 1.6 };
+                let color = theme::strategy_color(index);
+                let faint = marked.is_some_and(|marked| marked != index);
+                let color = if faint { color.gamma_multiply(0.3) } else { color };
+                let line = Line::new(name, PlotPoints::from(points)).id(index);
+                plot.line(line.color(color).width(width).style(style));
             }
         });
+    let touched = (0..strategies).find(|&i| shown.hovered_plot_item == Some(ItemId::new(i)));
+    if let Some(index) = touched.filter(|_| shown.response.contains_pointer()) {
+        hover::point(ui.ctx(), Pointed::Strategy(index));
+    }
 }
 
 /// Correlation between neighbouring blocks of steps against their length, by powers of two.

@@ -5,6 +5,7 @@ use egui::{Grid, RichText, Ui};
 
 use crate::command::{Command, PathCommand};
 use crate::format;
+use crate::panel::hover::{self, Pointed};
 use crate::store::class_name;
 use crate::world::World;
 
@@ -32,12 +33,17 @@ pub(super) fn show(
         let mut rank = 0;
         while let Some(path) = reader.next() {
             let header = path.header;
-            ui.label(RichText::new(format::count(f64::from(header.dwell))).monospace());
-            ui.label(RichText::new(class_name(path.vertices)).monospace());
+            let steps = RichText::new(format::count(f64::from(header.dwell))).monospace();
+            let class = RichText::new(class_name(path.vertices)).monospace();
+            let row = ui.label(steps).union(ui.label(class));
             let name = world.strategy_name(usize::from(header.strategy.0));
             let seed = header.strategy == PathHeader::NO_STRATEGY;
-            ui.label(if seed { "the seed" } else { name })
-                .on_hover_text(format!("Path {} of chain {}", header.id, header.id.chain.0));
+            let made_by = ui.label(if seed { "the seed" } else { name });
+            let row = row.union(made_by);
+            if row.contains_pointer() {
+                hover::point(ui.ctx(), Pointed::Stay(rank.into()));
+            }
+            row.on_hover_text(format!("Path {}; marked in the view and on the image", header.id));
             jump(ui, rank, header.id, commands);
             ui.end_row();
             rank += 1;

@@ -1,5 +1,6 @@
 //! The explorer: one chain that the user seeds and steps, and what became of each of its steps.
 
+mod film;
 mod moment;
 mod timeline;
 
@@ -7,9 +8,10 @@ use common::{
     ExplorerCommand, ExplorerState, LeaseRequest, MAX_RATE, Order, Pace, Role, Seed, SkipTo,
     StrategyId,
 };
-use egui::{Button, ComboBox, DragValue, RichText, Ui};
+use egui::{Button, Color32, ComboBox, DragValue, RichText, TextStyle, Ui};
 
 use super::Panel;
+use super::hover::{self, Pointed};
 use super::widgets::{Scale, dot, empty_state, row, slider, toggle};
 use crate::command::{Command, LayoutCommand};
 use crate::format;
@@ -18,6 +20,9 @@ use crate::world::World;
 
 /// Slowest play that the slider offers; scripts can ask for less.
 const SLOWEST: f32 = 0.1;
+
+/// Points that a strategy's dot and the frame of its name take.
+const AROUND_NAME: f32 = 36.0;
 
 /// The controls of the explorer.
 #[derive(Debug)]
@@ -28,11 +33,12 @@ pub(super) struct ExplorerPanel {
     fan: u32,
     /// The strategy of fans and skips.
     strategy: u8,
+    film: film::ExplorerFilm,
 }
 
 impl Default for ExplorerPanel {
     fn default() -> Self {
-        Self { rate: 2.0, fan: 32, strategy: 0 }
+        Self { rate: 2.0, fan: 32, strategy: 0, film: film::ExplorerFilm::default() }
     }
 }
 
@@ -59,9 +65,10 @@ impl Panel for ExplorerPanel {
         });
         tally(ui, state, world);
         timeline::show(ui, world, commands);
-        if let Some(shown) = world.moment {
-            moment::show(ui, world, shown);
+        if let Some(shown) = hover::moment(ui.ctx(), world) {
+            moment::show(ui, world, shown, commands);
         }
+        self.film.show(ui, world);
     }
 }
 
@@ -199,9 +206,19 @@ fn allowed(
         for (index, name) in world.names().strategies.iter().enumerate().take(64) {
             let strategy = StrategyId(index as u8);
             let is_in = state.allowed.contains(strategy);
+            // A dot at the end of a line would stand apart from its name.
+            let font = TextStyle::Small.resolve(ui.style());
+            let letters = ui.painter().layout_no_wrap(name.clone(), font, Color32::WHITE);
+            if ui.available_size_before_wrap().x < letters.size().x + AROUND_NAME {
+                ui.end_row();
+            }
             dot(ui, theme::strategy_color(index));
             let button = Button::selectable(is_in, RichText::new(name).small());
-            if ui.add(button).on_hover_text("Whether this strategy may act").clicked() {
+            let response = ui.add(button).on_hover_text("Whether this strategy may act");
+            if response.contains_pointer() {
+                hover::point(ui.ctx(), Pointed::Strategy(index));
+            }
+            if response.clicked() {
                 order(ExplorerCommand::Allow(state.allowed.with(strategy, !is_in)));
             }
         }

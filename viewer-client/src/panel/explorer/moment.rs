@@ -1,15 +1,23 @@
 //! One step of the explorer: what was changed, how probable its acceptance was, and its fate.
 
 use common::{FocusOutcome, VertexRecord};
-use egui::{Align2, Color32, FontId, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
+use egui::{
+    Align2, Color32, FontId, Rect, RichText, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2,
+    vec2,
+};
 
+use crate::command::{Command, PathCommand};
+use crate::format;
 use crate::panel::widgets::{dot, row};
 use crate::steering::Moment;
 use crate::theme;
 use crate::world::World;
 
+/// Powers of ten from the middle of a factor's bar to its end.
+const DECADES: f64 = 3.0;
+
 /// Shows a step.
-pub(super) fn show(ui: &mut Ui, world: &World<'_>, moment: &Moment) {
+pub(super) fn show(ui: &mut Ui, world: &World<'_>, moment: &Moment, commands: &mut Vec<Command>) {
     let step = &moment.step;
     ui.add_space(4.0);
     ui.horizontal(|ui| {
@@ -17,6 +25,10 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, moment: &Moment) {
         ui.label(RichText::new(world.strategy_name(usize::from(step.strategy.0))).strong());
         let fan = if step.fan { "fan, " } else { "" };
         ui.label(RichText::new(format!("{fan}no. {}", step.number)).weak());
+        let tip = "Selects the path before the step, with all its numbers in Selected path";
+        if ui.small_button("Inspect x").on_hover_text(tip).clicked() {
+            commands.push(Command::Path(PathCommand::Explored));
+        }
     });
     let (word, color) = fate(world, step.outcome);
     ui.label(RichText::new(word).color(color).strong());
@@ -53,6 +65,7 @@ fn acceptance_bar(ui: &mut Ui, a: f32, color: Color32) {
     let line = ui.visuals().widgets.noninteractive.bg_stroke;
     painter.rect_stroke(rect, 3.0, line, StrokeKind::Inside);
     let text = format!("a = {a:.4}");
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &text));
     let ink = ui.visuals().strong_text_color();
     painter.text(rect.center(), Align2::CENTER_CENTER, text, FontId::monospace(12.0), ink);
     response.on_hover_text("Probability that the chain goes from the path x to its proposal y");
@@ -117,22 +130,50 @@ fn factors(ui: &mut Ui, moment: &Moment) {
     let lines = [
         ("Q(y | x)", number(f.forward), "Density of proposing y from x, over the luminance of y"),
         ("Q(x | y)", number(f.backward), "The same for the way back"),
-        (
-            "Z(x) / Z(y)",
-            ratio(f.mixture_current, f.mixture_proposed),
-            "Weights of the strategies that can act on x, over those on y",
-        ),
-        (
-            "r",
-            ratio(f.backward * f.mixture_current, f.forward * f.mixture_proposed),
-            "Q(x | y) / Q(y | x) times Z(x) / Z(y); a is the lesser of r and 1",
-        ),
     ];
     for (label, value, tip) in lines {
         row(ui, label, tip, |ui| ui.label(RichText::new(value).monospace()));
     }
+    let way = quotient(f.backward, f.forward);
+    let mixture = quotient(f.mixture_current, f.mixture_proposed);
+    let ratios = [
+        (
+            "Q back / forth",
+            way,
+            "Q(x | y) over Q(y | x): above 1 where the way back is the easier one",
+        ),
+        ("Z(x) / Z(y)", mixture, "Weights of the strategies that can act on x, over those on y"),
+        ("r", way * mixture, "The product of both; a is the lesser of r and 1"),
+    ];
+    for (label, value, tip) in ratios {
+        row(ui, label, tip, |ui| balance(ui, value));
+    }
 }
 
-fn ratio(over: f64, under: f64) -> String {
-    if under > 0.0 { format!("{:.4}", over / under) } else { "0: no way back".to_owned() }
+/// Zero where there is no way back.
+fn quotient(over: f64, under: f64) -> f64 {
+    if under > 0.0 { over / under } else { 0.0 }
+}
+
+/// A factor as a number, and as a bar from the middle: to the right above 1, to the left below; a third
+/// of half the bar is a power of ten.
+fn balance(ui: &mut Ui, factor: f64) {
+    let text = if factor > 0.0 { format::exact(factor) } else { "0: no way back".to_owned() };
+    let size = vec2(ui.available_width(), 16.0);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &text));
+    let painter = ui.painter();
+    painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
+    let share = (factor.log10() / DECADES).clamp(-1.0, 1.0) as f32;
+    let middle = rect.center();
+    let end = middle + vec2(share * 0.5 * rect.width(), 0.0);
+    let filled =
+        Rect::from_two_pos(pos2(middle.x, rect.top() + 1.0), pos2(end.x, rect.bottom() - 1.0));
+    let color = if share < 0.0 { theme::BUSY } else { theme::GOOD };
+    painter.rect_filled(filled, 0.0, color.gamma_multiply(0.5));
+    let line = ui.visuals().widgets.noninteractive.fg_stroke;
+    painter.vline(middle.x, rect.y_range(), Stroke::new(1.0, line.color));
+    let ink = ui.visuals().strong_text_color();
+    let place = rect.left_center() + vec2(6.0, 0.0);
+    painter.text(place, Align2::LEFT_CENTER, text, FontId::monospace(12.0), ink);
 }

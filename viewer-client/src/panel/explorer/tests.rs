@@ -1,35 +1,160 @@
-use common::{Attendee, Author, ExplorerCommand, FocusOutcome, FocusPath, Notice, Order, PathId};
-use common::{Presence, Role, SkipTo};
+//! The explorer's panel: what every state shows, and what every button says.
+
+use common::{
+    Attendee, Author, ExplorerCommand, FilmTile, FocusOutcome, FocusPath, FocusStep, Notice, Order,
+    Pace, PathId, Presence, RatioFactors, Role, SkipTo, StrategyId, StrategySet,
+};
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::ExplorerPanel;
-use crate::command::Command;
+use crate::command::{Command, PathCommand};
+use crate::panel::hover::{self, Pointed};
 use crate::panel::tests::{Stage, shows};
 use crate::steering::tests::{step, vertex};
 
-#[test]
-fn a_failed_step_says_why_and_buttons_steer() {
+/// A driver's panel over an explorer that has a path.
+fn driven() -> Stage {
     let mut stage = Stage::new(ExplorerPanel::default());
     stage.status.welcome(crate::synthetic::welcome());
     let session = stage.status.welcome.as_ref().map_or(0, |w| w.session);
     let author = Author { session, name: "me".to_owned() };
-    let me = |role| Attendee { author: author.clone(), role, ..Attendee::default() };
+    let me = Attendee { author, role: Role::Driver, ..Attendee::default() };
     let steering = &mut stage.status.steering;
-    steering.take(Notice::Presence(Presence { viewers: vec![me(Role::Driver)] }));
+    steering.take(Notice::Presence(Presence { viewers: vec![me] }));
     steering.explorer.current = Some(PathId::default());
     let vertices = (0..4).map(vertex).collect();
     steering.focus.take_path(FocusPath { vertices, next: 1, ..FocusPath::default() });
-    steering.focus.take_step(step(1, FocusOutcome::Rejected, 4));
-    steering.focus.take_step(step(2, FocusOutcome::Failed(0), 4));
+    stage
+}
+
+fn click(harness: &mut Harness<'_, Stage>, label: &str) {
+    harness.get_by_label(label).click();
+    harness.run();
+}
+
+fn orders(harness: &Harness<'_, Stage>) -> Vec<ExplorerCommand> {
+    let order = |command: &Command| match command {
+        Command::Order(Order::Explorer(command)) => Some(*command),
+        _ => None,
+    };
+    harness.state().said.iter().filter_map(order).collect()
+}
+
+#[test]
+fn every_button_steers() {
+    let mut harness = driven().harness();
+    harness.run();
+    assert!(shows(&harness, "You drive"), "who steers");
+    for label in ["Newest", "Play", "Step", "To acceptance", "Skip to", "Fan", "lens"] {
+        click(&mut harness, label);
+    }
+    let wanted = [
+        ExplorerCommand::Seed(common::Seed::Newest),
+        ExplorerCommand::Play(2.0),
+        ExplorerCommand::Step(1),
+        ExplorerCommand::Skip(SkipTo::Acceptance),
+        ExplorerCommand::Skip(SkipTo::Strategy(StrategyId(0))),
+        ExplorerCommand::Fan { strategy: StrategyId(0), count: 32 },
+        ExplorerCommand::Allow(StrategySet::ALL.with(StrategyId(1), false)),
+    ];
+    assert_eq!(orders(&harness), wanted, "seven clicks");
+    harness.state_mut().status.steering.explorer.pace = Pace::Playing;
+    harness.run();
+    click(&mut harness, "Pause");
+    assert_eq!(orders(&harness).last(), Some(&ExplorerCommand::Pause));
+}
+
+#[test]
+fn observers_watch_and_may_ask() {
+    let mut stage = driven();
+    stage.status.steering.presence = Presence::default();
+    let mut harness = stage.harness();
+    harness.run();
+    click(&mut harness, "Step");
+    assert_eq!(orders(&harness), [], "it does not steer");
+    assert!(shows(&harness, "Nobody drives; you watch"), "why");
+    click(&mut harness, "Ask to drive");
+    assert_eq!(harness.state().said.len(), 1, "but may ask");
+}
+
+#[test]
+fn a_failed_step_says_why() {
+    let mut stage = driven();
+    let focus = &mut stage.status.steering.focus;
+    focus.take_step(step(1, FocusOutcome::Rejected, 4));
+    focus.take_step(step(2, FocusOutcome::Failed(0), 4));
     let mut harness = stage.harness();
     harness.run();
     assert!(shows(&harness, "Failed: occluded"), "why it failed");
-    assert!(shows(&harness, "You drive"), "who steers");
-    harness.get_by_label("To acceptance").click();
-    harness.run();
-    let wanted = Command::Order(Order::Explorer(ExplorerCommand::Skip(SkipTo::Acceptance)));
-    assert!(harness.state().said.contains(&wanted), "{:?}", harness.state().said);
-    harness.get_by_label("Back").click();
-    harness.run();
+    click(&mut harness, "Back");
     assert!(harness.state().said.contains(&Command::Scrub(Some(1))), "back by one");
+    harness.state_mut().scrub = Some(1);
+    harness.run();
+    assert!(shows(&harness, "Rejected"), "the step before");
+    click(&mut harness, "Live");
+    assert_eq!(harness.state().said.last(), Some(&Command::Scrub(None)), "and the newest again");
+}
+
+#[test]
+fn an_acceptance_is_taken_apart() {
+    let mut stage = driven();
+    let factors =
+        RatioFactors { forward: 4.0, backward: 1.0, mixture_current: 3.0, mixture_proposed: 2.0 };
+    let told = FocusStep { factors, acceptance: 0.375, ..step(1, FocusOutcome::Rejected, 4) };
+    stage.status.steering.focus.take_step(told);
+    let mut harness = stage.harness();
+    harness.run();
+    for text in ["a = 0.3750", "4.0000e0", "1.0000e0", "0.2500", "1.500", "0.3750"] {
+        assert!(shows(&harness, text), "`{text}` is missing");
+    }
+    click(&mut harness, "Inspect x");
+    let wanted = Command::Path(PathCommand::Explored);
+    assert_eq!(harness.state().said, [wanted], "all its numbers");
+    let one_way = FocusStep {
+        factors: RatioFactors { mixture_proposed: 0.0, ..factors },
+        acceptance: 0.0,
+        ..step(2, FocusOutcome::Rejected, 4)
+    };
+    harness.state_mut().status.steering.focus.take_step(one_way);
+    harness.run();
+    assert!(shows(&harness, "0: no way back"), "in words");
+}
+
+#[test]
+fn a_step_under_the_cursor_is_shown_without_a_click() {
+    let mut stage = driven();
+    let focus = &mut stage.status.steering.focus;
+    focus.take_step(step(1, FocusOutcome::Failed(1), 4));
+    focus.take_step(step(2, FocusOutcome::Rejected, 4));
+    let mut harness = stage.harness();
+    harness.run();
+    let strip = harness.get_by_label("Last steps").rect();
+    harness.hover_at(strip.left_center() + egui::vec2(3.0, 0.0));
+    harness.run_steps(40);
+    assert_eq!(hover::pointed(&harness.ctx), Some(Pointed::Step(1)), "the first");
+    assert!(shows(&harness, "Failed: off film"), "the panel shows it");
+    assert!(shows(&harness, "No. 1: bidirectional"), "and so does the tooltip");
+    assert_eq!(harness.state().said, [], "to look is no command");
+    harness.hover_at(strip.left_center() + egui::vec2(8.0, 0.0));
+    harness.drag_at(strip.left_center() + egui::vec2(8.0, 0.0));
+    harness.run_steps(2);
+    assert!(harness.state().said.contains(&Command::Scrub(Some(2))), "a press stays there");
+}
+
+#[test]
+fn the_exploration_has_a_film_that_nobody_takes_for_the_image() {
+    let mut stage = driven();
+    let rgb = [0.1, 0.3, 0.6].repeat(40 * 30);
+    let tile = FilmTile { sequence: 1, width: 40, height: 30, first_row: 0, steps: 2400, rgb };
+    let mut harness = {
+        let mut bare = driven().harness();
+        bare.run();
+        assert!(!shows(&bare, "Exploration"), "there is none before the first step");
+        assert!(stage.status.steering.film.accept(&tile), "a sound tile");
+        stage.harness()
+    };
+    harness.run();
+    assert!(shows(&harness, "Exploration, not the image: 2.40 k steps"), "it says what it is");
+    harness.get_by_label("Film of the exploration");
 }

@@ -1,10 +1,12 @@
 //! The last steps of the explorer, one bar each, to go back to.
 
 use common::FocusOutcome;
-use egui::{Sense, Stroke, Ui, pos2, vec2};
+use egui::{RichText, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use super::moment::fate;
 use crate::command::Command;
+use crate::panel::hover::{self, Pointed};
+use crate::steering::Moment;
 use crate::theme;
 use crate::world::World;
 
@@ -17,9 +19,11 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) 
     let moments = world.status.steering.focus.moments();
     let size = vec2(ui.available_width(), HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, "Last steps"));
     ui.painter().rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
     let room = (rect.width() / PITCH) as usize;
     let shown = world.moment.map(|moment| moment.step.number);
+    let marked = hover::moment(ui.ctx(), world).map(|moment| moment.step.number);
     // What is looked at stays in sight.
     let last = match world.scrub {
         Some(number) => moments.partition_point(|m| m.step.number <= number + room as u64 / 2),
@@ -37,23 +41,25 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) 
         ui.painter().line_segment([pos2(x, foot), pos2(x, foot - height)], stroke);
         let strategy = theme::strategy_color(usize::from(step.strategy.0));
         ui.painter().circle_filled(pos2(x, rect.bottom() - 3.0), 1.8, strategy);
-        if shown == Some(step.number) {
+        if marked == Some(step.number) {
             let ink = ui.visuals().strong_text_color();
             let line = [pos2(x, rect.top()), pos2(x, rect.bottom())];
             ui.painter().line_segment(line, Stroke::new(1.0, ink));
         }
     }
-    let pointed = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on());
-    if let Some(place) = pointed {
+    let at = |place: egui::Pos2| {
         let index = first + ((place.x - rect.left()) / PITCH).max(0.0) as usize;
-        if let Some(moment) = moments.get(index.min(last.saturating_sub(1))) {
-            commands.push(Command::Scrub(Some(moment.step.number)));
-        }
+        moments.get(index).filter(|_| index < last)
+    };
+    let held = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on());
+    if let Some(moment) = held.and_then(at) {
+        commands.push(Command::Scrub(Some(moment.step.number)));
     }
-    response.on_hover_text(
-        "The last steps: bars as high as a, short stubs for failures, a dot for the strategy. Click \
-         or drag to go back to one.",
-    );
+    let pointed = response.hover_pos().and_then(at);
+    if let Some(moment) = pointed {
+        hover::point(ui.ctx(), Pointed::Step(moment.step.number));
+    }
+    response.on_hover_ui(|ui| explain(ui, world, pointed));
     ui.horizontal(|ui| {
         let mut scrub = |ui: &mut Ui, label: &str, tip: &str, to: Option<Option<u64>>| {
             let clicked = ui.add_enabled(to.is_some(), egui::Button::new(label).small());
@@ -69,4 +75,17 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) 
         scrub(ui, "Forward", "The step after", number(place.map(|i| i + 1)));
         scrub(ui, "Live", "Follow the newest step", world.scrub.map(|_| None));
     });
+}
+
+/// What a bar stands for, and how bars are to be read.
+fn explain(ui: &mut Ui, world: &World<'_>, pointed: Option<&Moment>) {
+    if let Some(Moment { step, .. }) = pointed {
+        let (word, _) = fate(world, step.outcome);
+        let strategy = world.strategy_name(usize::from(step.strategy.0));
+        ui.label(RichText::new(format!("No. {}: {strategy}", step.number)).strong());
+        ui.label(format!("{word}, a = {:.4}", step.acceptance));
+    }
+    let key = "Bars are as high as a, short stubs are failures, dots are strategies. Click or drag to \
+               stay at a step.";
+    ui.label(RichText::new(key).small().weak());
 }

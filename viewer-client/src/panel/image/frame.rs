@@ -5,7 +5,9 @@ use egui::{
     Vec2, WidgetInfo, pos2, vec2,
 };
 
+use super::marks;
 use crate::command::{Command, FilterCommand, ImageCommand};
+use crate::panel::hover::{self, Pointed};
 use crate::region;
 use crate::theme;
 use crate::world::World;
@@ -74,6 +76,11 @@ impl Placement {
         [centre.x / self.film.x, centre.y / self.film.y].map(|share| share.clamp(0.0, 1.0))
     }
 
+    /// A point of film coordinates on the screen.
+    fn on_screen_point(&self, [u, v]: [f32; 2]) -> Pos2 {
+        self.origin + vec2(u, v) * self.film * self.scale
+    }
+
     /// A rectangle of film coordinates on the screen.
     fn on_screen(&self, [u0, v0, u1, v1]: region::Region) -> Rect {
         let place = |u: f64, v: f64| {
@@ -117,6 +124,11 @@ impl FrameState {
         };
         if let Some(region) = chosen {
             outline(&painter, placement.on_screen(region).expand(1.0));
+        }
+        marks::paint(&painter, world, |film| placement.on_screen_point(film));
+        if let Some(p) = response.hover_pos().filter(|_| hovered.is_some()) {
+            let point = placement.film_point(p) / film;
+            hover::point(ui.ctx(), Pointed::Film([point.x, point.y]));
         }
         hovered
     }

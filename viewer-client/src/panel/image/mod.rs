@@ -3,6 +3,7 @@
 mod file;
 mod frame;
 mod legend;
+mod marks;
 mod readout;
 
 use egui::{Button, ColorImage, RichText, TextureHandle, TextureOptions, Ui};

@@ -5,6 +5,7 @@ use egui_kittest::kittest::Queryable as _;
 use super::image::image_stage;
 use super::{Stage, diagnosed, shows, statistics};
 use crate::command::{Command, ImageCommand};
+use crate::panel::hover::{self, Pointed};
 use crate::panel::{diagnostics, statistics as counts};
 use crate::synthetic::welcome;
 
@@ -68,4 +69,51 @@ fn chains_that_disagree_raise_an_alarm_that_leads_there() {
     assert!((u0 - 2.0 / 40.0).abs() < 1e-9 && (v0 - 4.0 / 30.0).abs() < 1e-9, "{text}");
     assert_eq!(explore.to_string(), "explorer seed 0.0.0", "the path where a chain stayed");
     assert_eq!(show_path.to_string(), "path stay 0", "and the same path in the view");
+}
+
+#[test]
+fn what_is_pointed_at_is_marked_elsewhere() {
+    let mut stage = Stage::new(diagnostics::DiagnosticsPanel);
+    stage.film = image_stage(false).film;
+    stage.status.welcome(welcome());
+    stage.status.statistics(diagnosed());
+    let mut harness = stage.harness();
+    harness.run();
+    harness.get_by_label("DDD").hover();
+    harness.run_steps(40);
+    assert_eq!(hover::pointed(&harness.ctx), Some(Pointed::Stay(0)), "a long stay");
+    assert!(shows(&harness, "marked in the view"), "the tooltip says so");
+    harness.get_by_label("lens").hover();
+    harness.run_steps(3);
+    assert_eq!(hover::pointed(&harness.ctx), Some(Pointed::Strategy(1)), "a strategy");
+    harness.get_by_label_contains("Chains disagree").hover();
+    harness.run_steps(3);
+    assert_eq!(hover::pointed(&harness.ctx), None, "neither");
+    let mut counted = Stage::new(counts::StatisticsPanel);
+    counted.status.welcome(welcome());
+    counted.status.statistics(statistics());
+    let mut harness = counted.harness();
+    harness.run();
+    harness.get_by_label("lens").hover();
+    harness.run_steps(3);
+    assert_eq!(hover::pointed(&harness.ctx), Some(Pointed::Strategy(1)), "the same one");
+}
+
+#[test]
+fn diagnostics_that_are_not_there_yet_say_so() {
+    let mut stage = Stage::new(diagnostics::DiagnosticsPanel);
+    stage.status.welcome(welcome());
+    let mut early = diagnosed();
+    early.diagnostics = Some(std::sync::Arc::new(common::Diagnostics::default()));
+    stage.status.statistics(early);
+    let mut harness = stage.harness();
+    harness.run();
+    for text in ["Too early to tell", "Too few steps", "None yet"] {
+        assert!(shows(&harness, text), "`{text}` is missing");
+    }
+    let mut stage = Stage::new(diagnostics::DiagnosticsPanel);
+    stage.status.statistics(statistics());
+    let mut harness = stage.harness();
+    harness.run();
+    assert!(shows(&harness, "a newer one does"), "an older daemon tells no diagnostics");
 }

@@ -154,7 +154,7 @@ fn channels_and_visible_differences_are_asked_for() {
 
 /// What a drag with a button and modifiers does to the camera.
 fn dragged(mouse: MousePreset, button: PointerButton, modifiers: Modifiers) -> Vec<String> {
-    let mut stage = Stage::new(viewport::Viewport);
+    let mut stage = Stage::new(viewport::Viewport::default());
     stage.settings.layout.mouse = mouse;
     let mut harness = stage.harness();
     harness.run_steps(2);

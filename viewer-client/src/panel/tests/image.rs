@@ -8,6 +8,7 @@ use egui_kittest::kittest::Queryable as _;
 use super::{Stage, diagnosed, shows};
 use crate::command::{Command, ImageCommand};
 use crate::imaging::Reference;
+use crate::panel::hover::{self, Pointed};
 use crate::panel::image;
 
 #[test]
@@ -130,4 +131,19 @@ fn maps_wait_for_the_daemon() {
     harness.get_by_label("Dwell").click();
     harness.run();
     assert_eq!(harness.state().said, [], "there is no map yet");
+}
+
+#[test]
+fn a_pixel_that_is_pointed_at_is_told_to_the_view() {
+    let mut stage = image_stage(false);
+    stage.selection = Some(super::paths::selected(crate::selection::Detail::Unasked));
+    let mut harness = stage.harness();
+    harness.run();
+    let film = harness.get_by_role_and_label(WidgetRole::Image, "Film").rect();
+    harness.hover_at(film.center());
+    harness.run_steps(3);
+    let Some(Pointed::Film([u, v])) = hover::pointed(&harness.ctx) else {
+        panic!("the view draws the ray through it")
+    };
+    assert!((u - 0.5).abs() < 0.01 && (v - 0.5).abs() < 0.01, "the middle: {u} {v}");
 }

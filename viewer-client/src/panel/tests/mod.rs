@@ -95,7 +95,9 @@ impl Stage {
         let Some(mut panel) = self.panel.take() else { return };
         let mut said = std::mem::take(&mut self.said);
         let world = self.world();
+        hover::begin(ui.ctx());
         panel.ui(ui, &world, &mut said);
+        hover::end(ui.ctx());
         self.said = said;
         self.panel = Some(panel);
     }

@@ -10,6 +10,7 @@ use glam::Vec3;
 use super::highlight::arrow_head;
 use super::overlay::{MARGIN, veil};
 use super::project::Projector;
+use crate::panel::hover;
 use crate::steering::Moment;
 use crate::theme;
 use crate::world::World;
@@ -24,7 +25,7 @@ const MOST_OF_FAN: usize = 200;
 /// Draws what the explorer is at.
 pub(super) fn paint(painter: &Painter, projector: &Projector, rect: Rect, world: &World<'_>) {
     let pen = Pen { painter, projector };
-    let Some(moment) = world.moment else {
+    let Some(moment) = hover::moment(painter.ctx(), world) else {
         if let Some(path) = world.status.steering.focus.current() {
             pen.line(&path.vertices, Stroke::new(KEPT, theme::EXPLORED));
             pen.dots(&path.vertices, theme::EXPLORED);

@@ -179,7 +179,7 @@ mod tests {
     #[test]
     fn an_axis_moves_a_selector_or_scales_it() {
         for handles in Handles::ALL {
-            let mut stage = Stage::new(Viewport);
+            let mut stage = Stage::new(Viewport::default());
             let sphere = Sphere { kind: SelectorKind::Any, place: [0.0, 0.0, 0.0, 30.0] };
             stage.settings.filter.selectors = vec![sphere];
             stage.settings.filter.chosen = Some(0);
@@ -207,7 +207,7 @@ mod tests {
 
     #[test]
     fn an_axis_moves_the_light() {
-        let mut stage = Stage::new(Viewport);
+        let mut stage = Stage::new(Viewport::default());
         stage.settings.scene.light = Light::At([0.0; 3]);
         // The light's handles are as long as a twentieth of the scene.
         let said = pull(stage, 0.05 * Vec3::splat(100.0).length());

@@ -5,6 +5,7 @@ use glam::Vec3;
 
 use super::overlay::veil;
 use super::project::Projector;
+use crate::panel::hover::{self, Pointed};
 use crate::selection::Selection;
 use crate::theme;
 use crate::world::World;
@@ -37,8 +38,18 @@ pub(super) fn paint(painter: &Painter, projector: &Projector, world: &World<'_>,
             }
         }
     }
+    let pointed = hover::pointed(painter.ctx());
+    if let Some(Pointed::Edge(i)) = pointed
+        && let (Some(a), Some(b)) = (points.get(i), points.get(i + 1))
+        && let Some(line) = projector.segment(*a, *b)
+    {
+        painter.extend(egui::Shape::dashed_line(&line, Stroke::new(WIDTH + 2.0, ink), 6.0, 5.0));
+    }
     for (i, point) in points.iter().enumerate() {
         if let Some(place) = projector.point(*point) {
+            if pointed == Some(Pointed::Vertex(i)) {
+                painter.circle_stroke(place, 15.0, Stroke::new(2.5, ink));
+            }
             vertex(painter, place, (selection, i), ink);
         }
     }

@@ -2,6 +2,7 @@
 
 mod gesture;
 mod ghost;
+mod glimpse;
 mod handles;
 mod highlight;
 mod legend;
@@ -9,6 +10,7 @@ mod light;
 mod others;
 mod overlay;
 mod picture;
+mod pointed;
 mod project;
 mod selectors;
 
@@ -24,8 +26,10 @@ use crate::world::World;
 const TOLERANCE: f32 = 6.0;
 
 /// What is left of the window: the view into the scene.
-#[derive(Debug)]
-pub(super) struct Viewport;
+#[derive(Debug, Default)]
+pub(super) struct Viewport {
+    glimpse: glimpse::Glimpse,
+}
 
 impl Panel for Viewport {
     fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
@@ -51,5 +55,8 @@ impl Panel for Viewport {
         let callback = ViewportCallback { picture, ctx: ui.ctx().clone() };
         ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, callback));
         overlay::paint(ui, &projector, rect, world);
+        if world.model.is_some() {
+            self.glimpse.show(ui, (&response, &projector), world);
+        }
     }
 }

@@ -6,7 +6,7 @@ use egui::{
 use glam::Vec3;
 
 use super::project::Projector;
-use super::{ghost, highlight, light, others, selectors};
+use super::{ghost, highlight, light, others, pointed, selectors};
 use crate::format;
 use crate::status::LinkState;
 use crate::theme;
@@ -33,6 +33,7 @@ pub(super) fn paint(ui: &Ui, projector: &Projector, rect: Rect, world: &World<'_
     selectors::paint(&painter, projector, world);
     ghost::paint(&painter, projector, rect, world);
     highlight::paint(&painter, projector, world, ink);
+    pointed::paint(&painter, projector, world, ink);
     axes(&painter, rect, world, ink);
     captions(&painter, rect, world, ink);
     super::legend::paint(&painter, rect, world, ink);
