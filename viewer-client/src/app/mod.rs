@@ -1,5 +1,6 @@
 //! The viewer itself: owns what came, what the user chose, and what is on the graphics card.
 
+mod arrival;
 mod beyond;
 mod filtering;
 mod playing;
@@ -7,7 +8,7 @@ mod selecting;
 
 use std::time::{Duration, Instant};
 
-use common::{Appearance, Gaze, Notice};
+use common::{Appearance, Gaze};
 use egui_wgpu::RenderState;
 
 use crate::backlog::Backlog;
@@ -15,7 +16,7 @@ use crate::camera::{Bounds, ViewCamera};
 use crate::command::{
     CameraCommand, CloudCommand, Command, ImageCommand, LayoutCommand, PathCommand,
 };
-use crate::connection::{Delivery, FocusNews, Link};
+use crate::connection::Link;
 use crate::darkroom::Darkroom;
 use crate::desk::{Connect, Desk};
 use crate::gpu::{Quality, Renderer, Uploaded};
@@ -35,12 +36,6 @@ use crate::world::World;
 
 /// Points of paths that go to the graphics card in one frame at most: 6 MiB.
 const UPLOAD_POINTS: usize = 16 * PAGE_POINTS;
-/// Batches that one frame takes in at most; the rest waits for the next.
-const BATCHES_PER_FRAME: usize = 128;
-
-/// A filter that the user's hand is changing is sent when the hand has rested so long.
-const HAND: Duration = Duration::from_millis(120);
-
 /// The others are told of a new point of view this often at most.
 const APPEARANCE: Duration = Duration::from_millis(500);
 
@@ -232,144 +227,6 @@ impl Viewer {
         self.settings.cloud.frozen
     }
 
-    /// Takes in what has come. True when there was anything.
-    pub fn receive(&mut self) -> bool {
-        let before = self.store.counts();
-        let delivery = self.link.as_ref().map(Link::take).unwrap_or_default();
-        let mut news = !delivery.is_empty();
-        self.take(delivery);
-        news |= self.darkroom.collect(&mut self.settings.image, &mut self.status);
-        let time = self.started.elapsed().as_secs_f64();
-        for _ in 0..BATCHES_PER_FRAME {
-            if !self.waiting.is_due(self.settings.cloud.threshold as usize) {
-                break;
-            }
-            let Some(batch) = self.waiting.pop() else { break };
-            if batch.origin().revision < self.filter_in_force {
-                continue;
-            }
-            if self.settings.cloud.frozen {
-                self.store.skip(&batch);
-            } else {
-                self.store.append(&batch);
-            }
-        }
-        self.appear();
-        if self.filter_changed.is_some_and(|at| at.elapsed() >= HAND) {
-            self.filter_changed = None;
-            if self.settings.filter.wanted() != self.asked_for {
-                self.ask_for_paths();
-            }
-        }
-        let counts = self.store.counts();
-        self.status.path_rate.note(time, counts.paths);
-        self.status.byte_rate.note(time, counts.bytes);
-        news |= counts != before;
-        if counts != before && !self.script.is_empty() {
-            self.go_on();
-        }
-        news
-    }
-
-    /// Takes in a delivery; public for harnesses without a network.
-    pub fn take(&mut self, delivery: Delivery) {
-        if let Some(welcome) = delivery.welcome {
-            if welcome.scene_hash != self.scene_hash {
-                self.forget_scene();
-                self.scene_hash.clone_from(&welcome.scene_hash);
-            }
-            self.waiting.clear();
-            if !self.status.embedded {
-                self.desk.habits.note(&self.status.address);
-            }
-            self.appearance.0 = Appearance::default();
-            self.status.welcome(welcome);
-        }
-        if let Some(scene) = delivery.scene {
-            self.set_model(Model::new(scene.mesh));
-        }
-        if let Some(statistics) = delivery.statistics {
-            self.settings.image.suit(statistics.normalization);
-            self.status.statistics(statistics);
-        }
-        for news in delivery.focus {
-            match news {
-                FocusNews::Path(path) => self.status.steering.focus.take_path(path),
-                FocusNews::Step(step) => self.status.steering.focus.take_step(step),
-                FocusNews::Gap(steps) => self.status.steering.focus.miss(steps),
-            }
-        }
-        for tile in delivery.explorer_film.values() {
-            if !self.status.steering.film.accept(tile) {
-                tracing::warn!("a tile of the explorer's film contradicts itself and was left out");
-            }
-        }
-        let remarks = self.status.steering.remark_count;
-        for notice in delivery.notices {
-            match notice {
-                Notice::Detail(reply) => self.learn(*reply),
-                notice => self.status.steering.take(notice),
-            }
-        }
-        if self.status.steering.remark_count != remarks
-            && let Some(remark) = self.status.steering.remarks.back().cloned()
-        {
-            self.status.say(Ok(remark));
-        }
-        if let Some(reply) = delivery.filter {
-            if let Some(error) = &reply.error {
-                self.status.say(Err(format!("The filter is refused: {error}")));
-            } else {
-                // What came before was chosen by another filter.
-                self.filter_in_force = reply.revision;
-                self.store.clear();
-            }
-            self.status.filter = Some(reply);
-        }
-        for tile in delivery.film.values() {
-            if !self.darkroom.film.accept(tile) {
-                tracing::warn!("a tile of the image contradicts itself and was left out");
-            }
-        }
-        if !delivery.film.is_empty() && !self.script.is_empty() {
-            self.go_on();
-        }
-        if delivery.gaps > 0 {
-            self.store.note_gap(delivery.gap.paths);
-        }
-        let gone = self.waiting.extend(delivery.batches, self.settings.cloud.limit as usize);
-        if gone > 0 {
-            self.store.note_gap(gone as u64);
-        }
-        self.status.latency = delivery.latency.or(self.status.latency);
-        if let Some(state) = delivery.state {
-            self.status.link = state;
-        }
-    }
-
-    /// Leaves a scene, with everything that came of it.
-    fn forget_scene(&mut self) {
-        self.scene_hash.clear();
-        self.store.clear();
-        self.darkroom.film.clear();
-        self.model = None;
-        self.selection = None;
-        self.stale = Stale { surfaces: true, aids: true };
-    }
-
-    fn set_model(&mut self, model: Option<Model>) {
-        self.stale = Stale { surfaces: true, aids: true };
-        let welcome = self.status.welcome.as_ref();
-        let of_mesh = model.as_ref().and_then(|m| m.mesh.camera);
-        let camera = welcome.map(|w| w.camera).or(of_mesh);
-        if let Some(model) = &model {
-            self.camera.set_scene(model.bounds, camera);
-        }
-        self.model = model;
-        self.judge();
-        self.go_on();
-    }
-
     /// Goes on with the script as far as what has come allows.
     fn go_on(&mut self) {
         let commands = std::mem::take(&mut self.script);
@@ -545,7 +402,7 @@ impl Viewer {
             }
         }
         if self.filter_changed.is_some() {
-            ctx.request_repaint_after(HAND);
+            ctx.request_repaint_after(arrival::HAND);
         }
         if self.waiting.is_due(self.settings.cloud.threshold as usize) {
             ctx.request_repaint();

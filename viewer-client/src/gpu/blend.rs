@@ -1,4 +1,4 @@
-//! Paths that were added up, laid over the surfaces.
+//! Paths that were added up, laid over the surfaces [McGuire and Bavoil 2013].
 
 use shaders::BLEND;
 
