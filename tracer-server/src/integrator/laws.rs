@@ -357,6 +357,40 @@ fn the_number_of_threads_changes_no_bit() {
     assert_eq!(by_bdpt(1), by_bdpt(2), "bidirectional tracing on two threads");
 }
 
+/// Correlation of what two images err by, over the pixels, in units of each pixel's own spread.
+fn correlation(runs: &[Vec<[f64; 3]>], a: usize, b: usize) -> f64 {
+    let others: Vec<_> = (0..runs.len()).filter(|&run| run != a && run != b).collect();
+    let green = |run: usize, pixel: usize| runs[run][pixel][1];
+    let mut sums = [0.0; 3];
+    for pixel in 0..runs[0].len() {
+        let values: Accumulator = others.iter().map(|&run| green(run, pixel)).collect();
+        let err = |run| (green(run, pixel) - values.mean()) / values.variance().sqrt();
+        let (x, y) = (err(a), err(b));
+        sums = [sums[0] + x * y, sums[1] + x * x, sums[2] + y * y];
+    }
+    sums[0] / (sums[1] * sums[2]).sqrt()
+}
+
+/// Neighbouring seeds share no random numbers: what one image errs by tells nothing of the other.
+#[test]
+fn seeds_are_independent() {
+    let scene = diffuse_room().film(16, 16).build();
+    // Neighbouring pixels of a chain's image err together, so that fewer of them count.
+    let by_path = (runs(|seed| path_traced(&scene, seed, 16)), 256.0);
+    let by_bdpt = (runs(|seed| bidirectional(&scene, seed, 4)), 256.0);
+    let by_mlt = (runs(|seed| metropolis(&scene, seed, 500)), 128.0);
+    for (name, (runs, count)) in [("path", by_path), ("bdpt", by_bdpt), ("mlt", by_mlt)] {
+        // The mean of fourteen others is subtracted from both, which correlates them by 1 / 15.
+        for seed in 0..8 {
+            let rho = correlation(&runs, 2 * seed, 2 * seed + 1) - 1.0 / 15.0;
+            assert!(rho.abs() < 5.0 / f64::sqrt(count), "{name}, seeds {seed}: {rho}");
+        }
+        let twice = [runs[0].clone(), runs[0].clone()].into_iter().chain(runs[2..].to_vec());
+        let rho = correlation(&twice.collect::<Vec<_>>(), 0, 1);
+        assert!(rho > 0.99, "{name}: the same image twice is found out, at {rho}");
+    }
+}
+
 #[test]
 fn watching_a_chain_changes_no_bit() {
     let scene = specular_room().build();

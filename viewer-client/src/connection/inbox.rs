@@ -69,7 +69,7 @@ pub struct Delivery {
 }
 
 impl Delivery {
-    /// True when nothing was delivered.
+    /// True when nothing was delivered that is worth a picture of its own.
     pub fn is_empty(&self) -> bool {
         let quiet = self.state.is_none() && self.welcome.is_none() && self.scene.is_none();
         quiet
@@ -81,7 +81,6 @@ impl Delivery {
             && self.explorer_film.is_empty()
             && self.notices.is_empty()
             && self.filter.is_none()
-            && self.latency.is_none()
     }
 
     fn push(&mut self, event: TracerEvent) {

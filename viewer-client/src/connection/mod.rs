@@ -248,9 +248,9 @@ impl Keeper {
                     });
                 }
                 Some(answered) = asking.join_next() => {
+                    // Shown with what comes next: not worth a picture of its own.
                     if let Ok(Ok(latency)) = answered {
                         self.inbox.push_latency(latency);
-                        (self.waker)(Haste::Whenever);
                     }
                 }
                 Some(event) = self.orders.recv() => {
