@@ -141,9 +141,9 @@ mod tests {
         });
         let preview = map.preview(Rgb::new(1.0, 0.5, 0.0));
         assert_eq!((preview.width, preview.height, preview.texels.len()), (344, 1, 344), "small");
-        // Four or five of nine texels are white; so are one or two of the last three.
-        let code = |share: f64, factor: f64| Coding::encode_srgb(share / 9.0 * factor);
-        assert_eq!(preview.texels[0], [code(5.0, 1.0), code(5.0, 0.5), 0], "the first block");
+        // Every other column is white: two of the first three, and one of the next.
+        let code = |share: f64| [share, 0.5 * share, 0.0].map(Coding::encode_srgb);
+        assert_eq!(preview.texels[..2], [code(2.0 / 3.0), code(1.0 / 3.0)], "the first blocks");
         let whole = checks().preview(Rgb::WHITE);
         assert_eq!(whole.texels, [[255, 0, 0], [0; 3], [0; 3], [0, 0, 255]], "kept as it is");
     }
