@@ -87,10 +87,10 @@ fn step(pen: &Pen<'_>, moment: &Moment) {
     }
 }
 
-/// What the strokes mean.
+/// What the strokes mean, below the line that counts paths.
 fn key(painter: &Painter, rect: Rect, moment: &Moment) {
     let ink = Color32::WHITE;
-    let mut place = rect.center_top() + vec2(-170.0, MARGIN + 6.0);
+    let mut place = rect.center_top() + vec2(-170.0, MARGIN + 34.0);
     let area = Rect::from_min_size(place - vec2(8.0, 9.0), vec2(356.0, 20.0));
     veil(painter, area, ink);
     let made = if moment.step.is_complete() { "proposed" } else { "came to" };
