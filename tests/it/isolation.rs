@@ -141,8 +141,9 @@ async fn measure(
     for _ in crowd.1..crowd.0 {
         reading.spawn(read(address.to_owned(), Arc::clone(&over), Arc::clone(received)));
     }
-    // Statistics are half a second old at most: they are read once they are from this time.
-    tokio::time::sleep(Duration::from_millis(600)).await;
+    // Statistics are half a second and a round of the chains old at most: they are read once they are
+    // from this time.
+    tokio::time::sleep(Duration::from_secs(1)).await;
     let (before, _) = look(address).await;
     tokio::time::sleep(LASTS).await;
     let (after, _) = look(address).await;
