@@ -142,3 +142,11 @@ pub enum Notice {
     /// The answer to a question about a path.
     Detail(Box<DetailReply>),
 }
+
+impl Notice {
+    /// True for a state that makes void the `old` one of its kind, which nobody has been told yet.
+    pub fn makes_void(&self, old: &Self) -> bool {
+        let is_state = matches!(self, Self::Presence(_) | Self::Explorer(_) | Self::Chains(_));
+        is_state && std::mem::discriminant(self) == std::mem::discriminant(old)
+    }
+}

@@ -25,12 +25,9 @@ impl ControlQueue {
     /// before it that is not sent yet.
     #[must_use]
     pub(super) fn push(&mut self, control: Control, messages: usize, bytes: usize) -> bool {
-        if let Control::Notice(notice) = &control
-            && is_state(notice)
-        {
-            let kind = std::mem::discriminant(notice);
+        if let Control::Notice(notice) = &control {
             self.waiting.retain(|old| match old {
-                Control::Notice(old) => std::mem::discriminant(old) != kind,
+                Control::Notice(old) => !notice.makes_void(old),
                 Control::Statistics(_) | Control::FilterReply(_) => true,
             });
             self.bytes = self.waiting.iter().map(Control::byte_len).sum();
@@ -61,11 +58,6 @@ impl ControlQueue {
     pub(super) fn byte_len(&self) -> usize {
         self.bytes
     }
-}
-
-/// True for what a newer notice of its kind makes void.
-fn is_state(notice: &Notice) -> bool {
-    matches!(notice, Notice::Presence(_) | Notice::Explorer(_) | Notice::Chains(_))
 }
 
 impl Control {

@@ -140,15 +140,7 @@ impl Delivery {
 
     /// Puts in a notice. A state replaces the one before it that nobody has looked at.
     fn push_notice(&mut self, notice: Notice) {
-        let is_state = |notice: &Notice| {
-            matches!(notice, Notice::Presence(_) | Notice::Explorer(_) | Notice::Chains(_))
-        };
-        if is_state(&notice) {
-            let same = |old: &Notice| {
-                std::mem::discriminant(old) == std::mem::discriminant(&notice) && is_state(old)
-            };
-            self.notices.retain(|old| !same(old));
-        }
+        self.notices.retain(|old| !notice.makes_void(old));
         if self.notices.len() >= NOTICES {
             self.notices.pop_front();
         }

@@ -2,7 +2,7 @@
 
 use shaders::COMPOSITE;
 
-use super::pipeline::{FrameGroup, module};
+use super::pipeline::{FrameGroup, module, sampled_layout};
 
 /// The pipeline and the texture it reads.
 #[derive(Debug)]
@@ -21,7 +21,7 @@ impl Composite {
         format: wgpu::TextureFormat,
     ) -> Self {
         let module = module(device, COMPOSITE);
-        let layout = picture_layout(device);
+        let layout = sampled_layout(device, "picture", wgpu::TextureViewDimension::D2);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("composite"),
             bind_group_layouts: &[Some(&frame.layout), Some(&layout)],
@@ -83,27 +83,4 @@ impl Composite {
         pass.set_bind_group(1, group, &[]);
         pass.draw(0..3, 0..1);
     }
-}
-
-fn picture_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty,
-        count: None,
-    };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("picture"),
-        entries: &[
-            entry(
-                0,
-                wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: false,
-                },
-            ),
-            entry(1, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-        ],
-    })
 }

@@ -2,6 +2,8 @@
 
 use common::TexturePreview;
 
+use super::pipeline::sampled_layout;
+
 /// Bytes that all layers may take on the graphics card, smaller copies aside.
 const BUDGET: usize = 64 << 20;
 /// Side of a layer in texels: the largest, and the smallest that still tells a texture from another.
@@ -18,7 +20,7 @@ pub(super) struct Textures {
 impl Textures {
     /// One white layer, since an array cannot be empty.
     pub(super) fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
-        let layout = layout(device);
+        let layout = sampled_layout(device, "textures", wgpu::TextureViewDimension::D2Array);
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("texture"),
             address_mode_u: wgpu::AddressMode::Repeat,
@@ -157,29 +159,6 @@ fn mean(texels: [[u8; 4]; 4]) -> [u8; 4] {
     std::array::from_fn(|c| {
         let sum: u16 = texels.iter().map(|texel| u16::from(texel[c])).sum();
         ((sum + 2) / 4) as u8
-    })
-}
-
-fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty,
-        count: None,
-    };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("textures"),
-        entries: &[
-            entry(
-                0,
-                wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                    view_dimension: wgpu::TextureViewDimension::D2Array,
-                    multisampled: false,
-                },
-            ),
-            entry(1, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-        ],
     })
 }
 
