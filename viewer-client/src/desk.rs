@@ -24,6 +24,8 @@ pub struct Desk {
     pub habits: Habits,
     /// How to connect elsewhere; absent without a window.
     pub connect: Option<Connect>,
+    /// HOST:PORT of the daemon inside this program, if there is one.
+    pub home: Option<String>,
     copied: Option<String>,
     /// Where the next picture of the window goes.
     wanted: Option<PathBuf>,
@@ -38,6 +40,11 @@ impl fmt::Debug for Desk {
 }
 
 impl Desk {
+    /// Of a program with a daemon inside at `home`, HOST:PORT, or of one without.
+    pub fn new(home: Option<String>) -> Self {
+        Self { home, ..Self::default() }
+    }
+
     /// Puts a text into the clipboard with the next frame.
     pub fn copy(&mut self, text: String) {
         self.copied = Some(text);

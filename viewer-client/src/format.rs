@@ -65,6 +65,18 @@ pub fn percent(part: f64, whole: f64) -> String {
     if whole > 0.0 { format!("{:.1} %", 100.0 * part / whole) } else { "–".to_owned() }
 }
 
+/// A message with a capital, as it stands alone: errors begin without one, to be joined.
+pub fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(char::to_uppercase);
+    first.into_iter().flatten().chain(letters).collect()
+}
+
+/// A number of steps: `1 step`, `12.3 k steps`.
+pub fn steps(number: u64) -> String {
+    if number == 1 { "1 step".to_owned() } else { format!("{} steps", count(number as f64)) }
+}
+
 /// A time span: `42 s`, `3:07 min`, `2:05 h`.
 pub fn duration(seconds: f64) -> String {
     let whole = seconds.max(0.0) as u64;

@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use common::{FilterReply, Role, Statistics, Welcome};
 
+use crate::format;
 use crate::rates::{History, RateMeter};
 use crate::steering::Steering;
 use crate::trends::Trends;
@@ -94,6 +95,14 @@ impl Status {
         self.link == LinkState::Connected
     }
 
+    /// Mutations a second as they are made now: none while the chains rest or out of reach, whatever
+    /// was counted before.
+    pub fn mutation_rate(&self) -> f64 {
+        let resting = self.steering.chains.as_ref().is_some_and(|chains| !chains.running);
+        let statistics = self.statistics.as_ref().filter(|_| self.is_connected() && !resting);
+        statistics.map_or(0.0, |statistics| statistics.mutations_per_second)
+    }
+
     /// What this viewer may do now.
     pub fn role(&self) -> Role {
         self.welcome.as_ref().map_or(Role::Observer, |w| self.steering.role(w.session))
@@ -103,6 +112,7 @@ impl Status {
     pub fn say(&mut self, said: Result<String, String>) {
         let is_bad = said.is_err();
         let text = said.unwrap_or_else(|problem| problem);
+        let text = format::sentence(&text);
         self.notice = Some(Notice { text, is_bad, at: Instant::now() });
     }
 

@@ -12,8 +12,6 @@ use crate::film::Film;
 
 /// Steps of the explorer that are kept: at the fastest pace, several seconds of them.
 const KEPT_STEPS: usize = 10_000;
-/// Remarks that are kept.
-const KEPT_REMARKS: usize = 32;
 
 /// What is known of who steers, and of what is steered.
 #[derive(Debug, Default)]
@@ -28,8 +26,8 @@ pub struct Steering {
     pub focus: Focus,
     /// The explorer's film: no part of the image.
     pub film: Film,
-    /// What the daemon answered and announced last, for people; the newest is the last.
-    pub remarks: VecDeque<String>,
+    /// What the daemon announced or refused last, for people.
+    pub remark: Option<Result<String, String>>,
     /// Remarks that ever came: changes when there is a new one.
     pub remark_count: u64,
 }
@@ -54,31 +52,28 @@ impl Steering {
             Notice::Chains(state) => {
                 let news = self.chains.as_ref().is_none_or(|old| old.change != state.change);
                 if news && let Some(by) = state.by.as_ref().filter(|_| !state.change.is_empty()) {
-                    self.remark(format!("{}: {}", by.name, state.change));
+                    self.remark(Ok(format!("{}: {}", by.name, state.change)));
                 }
                 self.chains = Some(state);
             }
             Notice::Lease(LeaseNotice { event, by }) => {
                 let by = by.map_or_else(|| "the daemon".to_owned(), |author| author.name);
-                self.remark(match event {
+                self.remark(Ok(match event {
                     LeaseEvent::Granted => "you are the driver now".to_owned(),
                     LeaseEvent::Lost => format!("{by} is the driver now"),
                     LeaseEvent::Asked => format!("{by} asks for the lease"),
-                });
+                }));
             }
-            Notice::Reply(OrderReply { error: Some(error), .. }) => self.remark(error),
+            Notice::Reply(OrderReply { error: Some(error), .. }) => self.remark(Err(error)),
             // The viewer keeps these with the path that they are about.
             Notice::Reply(OrderReply { error: None, .. }) | Notice::Detail(_) => {}
         }
     }
 
     /// Keeps something that people should read.
-    pub fn remark(&mut self, text: String) {
+    pub fn remark(&mut self, said: Result<String, String>) {
         self.remark_count += 1;
-        self.remarks.push_back(text);
-        if self.remarks.len() > KEPT_REMARKS {
-            self.remarks.pop_front();
-        }
+        self.remark = Some(said);
     }
 }
 

@@ -78,10 +78,17 @@ const STRATEGIES: [[u8; 3]; 8] = [
     [160, 160, 160],
 ];
 
-/// The colour of a strategy in tables and in the cloud.
+/// The colour of a strategy, a chain or a class in tables and in the cloud. Beyond the first eight the
+/// hues come again, greyer: what comes later is rarer, as a rule.
 pub fn strategy_color(index: usize) -> Color32 {
-    let [r, g, b] = STRATEGIES[index.min(PALETTE_SIZE - 1) % STRATEGIES.len()];
-    Color32::from_rgb(r, g, b)
+    let index = index.min(PALETTE_SIZE - 1);
+    let [r, g, b] = STRATEGIES[index % STRATEGIES.len()];
+    let color = Color32::from_rgb(r, g, b);
+    if index < STRATEGIES.len() {
+        color
+    } else {
+        color.lerp_to_gamma(Color32::from_gray(100), 0.55)
+    }
 }
 
 /// Reasons of failure: muted, so that they are not taken for strategies, and apart in lightness.

@@ -43,6 +43,8 @@ pub struct World<'a> {
     pub waiting: usize,
     /// HOST:PORT of daemons that were watched, the newest first.
     pub recent: &'a [String],
+    /// There is a daemon inside this program.
+    pub has_home: bool,
     /// The file of paths that is played, if one is.
     pub playback: Option<&'a Playback>,
     /// What the filter wants of it.

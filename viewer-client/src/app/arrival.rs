@@ -128,9 +128,9 @@ impl Viewer {
             }
         }
         if self.status.steering.remark_count != remarks
-            && let Some(remark) = self.status.steering.remarks.back().cloned()
+            && let Some(remark) = self.status.steering.remark.clone()
         {
-            self.status.say(Ok(remark));
+            self.status.say(remark);
         }
     }
 

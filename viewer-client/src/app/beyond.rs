@@ -1,7 +1,7 @@
 //! Commands that go beyond the window: other daemons, links, pictures of the window, the filter.
 
 use super::Viewer;
-use crate::command::DeskCommand;
+use crate::command::{DeskCommand, HOME};
 use crate::connection::Peer;
 use crate::panel;
 use crate::share;
@@ -54,6 +54,14 @@ impl Viewer {
         let (address, commands) = if place.starts_with(share::SCHEME) {
             let shared = share::read(place).map_err(|error| error.to_string())?;
             (shared.address, shared.commands)
+        } else if place == HOME {
+            let home = self.desk.home.clone();
+            (
+                home.ok_or(
+                    "There is no daemon inside this program: it was told to watch another.",
+                )?,
+                Vec::new(),
+            )
         } else {
             (place.to_owned(), Vec::new())
         };
@@ -61,7 +69,8 @@ impl Viewer {
         let link = connect(Peer::open(address.clone()))
             .map_err(|error| format!("Cannot connect to {address}: {error}"))?;
         self.link = None;
-        self.status = Status::new(address, false);
+        let embedded = self.desk.home.as_ref() == Some(&address);
+        self.status = Status::new(address, embedded);
         (self.filters, self.filter_in_force) = (0, 0);
         self.waiting.clear();
         self.forget_scene();

@@ -95,13 +95,14 @@ impl Viewer {
     /// A viewer that has not connected yet.
     pub fn new(status: Status) -> Self {
         let settings = Settings::default();
+        let home = status.embedded.then(|| status.address.clone());
         Self {
             store: Store::new(budget_bytes(settings.cloud.budget_mib)),
             settings,
             camera: ViewCamera::default(),
             status,
             darkroom: Darkroom::default(),
-            desk: Desk::default(),
+            desk: Desk::new(home),
             model: None,
             scene_hash: String::new(),
             link: None,
@@ -340,7 +341,7 @@ impl Viewer {
         self.orders += 1;
         let sent = self.link.as_ref().is_some_and(|link| link.order(self.orders, order));
         if !sent {
-            self.status.steering.remark("not sent: there is no connection".to_owned());
+            self.status.steering.remark(Err("not sent: there is no connection".to_owned()));
         }
     }
 
@@ -388,6 +389,7 @@ impl Viewer {
             scrub: self.scrub,
             waiting: self.waiting.paths(),
             recent: &self.desk.habits.recent,
+            has_home: self.desk.home.is_some(),
             model: self.model.as_ref(),
             now: Instant::now(),
         }

@@ -37,8 +37,14 @@ impl fmt::Display for Source {
     }
 }
 
+/// Stands for the address of the daemon inside this program.
+pub const HOME: &str = "home";
+
 pub(super) const FORMS: &[Form] = &[
-    ("connect HOST:PORT|LINK", "watch another daemon, or follow a link"),
+    (
+        "connect HOST:PORT|LINK|home",
+        "watch another daemon, follow a link, or go back to the own one",
+    ),
     ("share", "copy a link that restores camera, filter, selection and colours"),
     ("screenshot FILE.png", "write the whole window as an image"),
     ("copy NAME|status", "copy what a panel says, or the state of the session, as text"),

@@ -18,7 +18,7 @@ mod words;
 
 pub use camera::{CameraCommand, Place, Side};
 pub use cloud::{Blend, CloudCommand, ColorMode, ColorScale, Marks};
-pub use desk::{DeskCommand, Source};
+pub use desk::{DeskCommand, HOME, Source};
 pub use filter::{FilterCommand, MOST_KEPT, MOST_SELECTORS, Sphere, kept_name, kind_name};
 pub use image::{Channel, ImageCommand, Layer, ToneCurve};
 pub use layout::{LayoutCommand, Move, PanelName, ThemeName, WindowSide};

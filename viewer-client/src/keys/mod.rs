@@ -340,7 +340,8 @@ pub fn key_name(shortcut: KeyboardShortcut) -> String {
 
 /// The commands of the keys pressed since the last frame.
 pub fn pressed(ctx: &egui::Context, world: &World<'_>, commands: &mut Vec<Command>) {
-    if ctx.egui_wants_keyboard_input() {
+    // Escape closes a menu or a list, and then means nothing else.
+    if ctx.egui_wants_keyboard_input() || egui::Popup::is_any_open(ctx) {
         return;
     }
     if ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Questionmark)) {

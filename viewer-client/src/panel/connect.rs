@@ -2,7 +2,7 @@
 
 use egui::{Button, RichText, TextEdit, Ui};
 
-use crate::command::{Command, DeskCommand};
+use crate::command::{Command, DeskCommand, HOME};
 use crate::world::World;
 
 /// What the user has typed.
@@ -25,6 +25,13 @@ impl ConnectMenu {
         if let Some(address) = line(ui, &mut self.address, hint, "Connect") {
             commands.push(Command::Desk(DeskCommand::Connect(address)));
             ui.close();
+        }
+        if world.has_home && !world.status.embedded {
+            let tip = "Back to the daemon inside this program";
+            if ui.button("The built-in daemon").on_hover_text(tip).clicked() {
+                commands.push(Command::Desk(DeskCommand::Connect(HOME.to_owned())));
+                ui.close();
+            }
         }
         if !world.recent.is_empty() {
             ui.label(RichText::new("Recent").small().weak());

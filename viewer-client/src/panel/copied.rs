@@ -58,7 +58,7 @@ fn status(world: &World<'_>) -> String {
         line!(text, "latency\t{:.2} ms", 1e3 * latency.as_secs_f64());
     }
     if let Some(statistics) = &status.statistics {
-        line!(text, "mutations a second\t{:.0}", statistics.mutations_per_second);
+        line!(text, "mutations a second\t{:.0}", status.mutation_rate());
         line!(text, "paths dropped\t{}", statistics.paths_dropped);
         line!(text, "daemon's memory\t{}", format::bytes(statistics.memory_bytes));
     }
@@ -170,7 +170,7 @@ fn explorer(world: &World<'_>) -> String {
 fn statistics(world: &World<'_>) -> String {
     let mut text = String::new();
     let Some(statistics) = &world.status.statistics else { return text };
-    line!(text, "mutations a second\t{:.0}", statistics.mutations_per_second);
+    line!(text, "mutations a second\t{:.0}", world.status.mutation_rate());
     let (b, error) = (statistics.normalization, statistics.normalization_error);
     line!(text, "b\t{b:.8}\t±\t{error:.2e}");
     line!(text, "strategy\tproposed\tgenerated\taccepted\tmean acceptance");

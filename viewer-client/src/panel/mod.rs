@@ -37,7 +37,9 @@ use egui::{Event, Frame, Id, Margin, Response, ScrollArea, Sense, Ui};
 pub use copied::text as text_of;
 pub use notice::NOTICE_TIME;
 
-use crate::command::{Command, DeskCommand, LayoutCommand, Move, PanelName, Source, WindowSide};
+use crate::command::{
+    Command, DeskCommand, LayoutCommand, Move, PanelName, Source, Switch, WindowSide,
+};
 use crate::settings::WIDTHS;
 use crate::world::World;
 
@@ -166,6 +168,7 @@ fn sections(
     commands: &mut Vec<Command>,
 ) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let mut pointed = None;
         for &name in names {
             let found = panels.iter_mut().find(|(slot, _)| *slot == Slot::Section(name));
             let Some((_, panel)) = found else { continue };
@@ -176,9 +179,19 @@ fn sections(
                     ui.add_space(14.0);
                 }
             });
+            let above = shown.response.rect.top() - ui.min_rect().top();
+            hold(ui, name, above);
+            if ui.data(|data| data.get_temp(revealed())) == Some(name) {
+                ui.data_mut(|data| data.remove::<PanelName>(revealed()));
+                shown.response.scroll_to_me(Some(egui::Align::Min));
+            }
+            if shown.response.contains_pointer() {
+                pointed = Some((name, above));
+            }
             heading::receive(ui, &shown.response, name, commands);
             copy_by_key(ui, &shown.response, name, commands);
         }
+        ui.data_mut(|data| data.insert_temp(ui.scope_id(), pointed));
         // What is dropped below the last one goes to the foot of the side.
         let foot = egui::vec2(ui.available_width(), FOOT);
         let (_, rest) = ui.allocate_exact_size(foot, Sense::hover());
@@ -190,6 +203,35 @@ fn sections(
             commands.push(Command::Layout(LayoutCommand::Arrange(*dragged, place)));
         }
     });
+}
+
+/// Opens a section and scrolls to it: what someone asked to see appears there.
+fn reveal(ui: &Ui, name: PanelName, world: &World<'_>, commands: &mut Vec<Command>) {
+    let layout = &world.settings.layout;
+    if !layout.is_open(name) {
+        commands.push(Command::Layout(LayoutCommand::Panel(name, Switch::On)));
+    }
+    if layout.is_folded(name) {
+        commands.push(Command::Layout(LayoutCommand::Fold(name, Switch::Off)));
+    }
+    ui.data_mut(|data| data.insert_temp(revealed(), name));
+}
+
+/// Where the section is kept that is to be scrolled to.
+fn revealed() -> Id {
+    Id::unique("revealed section")
+}
+
+/// Scrolls by as much as the sections above the one under the cursor have grown since the last frame,
+/// which began it `above` points below the first: no button runs away from who is about to press it.
+fn hold(ui: &Ui, name: PanelName, above: f32) {
+    let pointed: Option<(PanelName, f32)> = ui.data(|data| data.get_temp(ui.scope_id())).flatten();
+    if let Some((_, before)) =
+        pointed.filter(|(pointed, before)| *pointed == name && *before != above)
+    {
+        let moved = egui::vec2(0.0, before - above);
+        ui.scroll_with_delta_animation(moved, egui::style::ScrollAnimation::none());
+    }
 }
 
 /// Ctrl+C over a section copies what it says, unless a text is selected or written.

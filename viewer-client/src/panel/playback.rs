@@ -1,6 +1,6 @@
 //! A file of paths: which step is shown, what became of it, and how to go on.
 
-use egui::{Label, RichText, Sense, Slider, Ui};
+use egui::{FontFamily, Label, RichText, Sense, Slider, Ui};
 
 use super::Panel;
 use super::widgets::{Scale, dot, row, slider};
@@ -93,7 +93,7 @@ fn describe(ui: &mut Ui, stage: &Stage, step: &Step) {
         let tip = "E, C the ends; e on the light, S on a surface, c on the lens; d: cannot be \
                    connected";
         row(ui, "Vertices", tip, |ui| {
-            let text = RichText::new(&step.configuration).monospace().small();
+            let text = RichText::new(&step.configuration).small().family(FontFamily::Monospace);
             ui.add(Label::new(text).wrap().sense(Sense::hover()))
         });
     }

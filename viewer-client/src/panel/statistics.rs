@@ -25,8 +25,7 @@ impl Panel for StatisticsPanel {
             );
             return;
         };
-        let rate =
-            RichText::new(format::count(statistics.mutations_per_second)).size(19.0).strong();
+        let rate = RichText::new(format::count(world.status.mutation_rate())).size(19.0).strong();
         ui.columns(2, |columns| {
             if let [left, right] = columns {
                 reading(left, rate, "mutations a second");
@@ -154,7 +153,7 @@ fn totals(ui: &mut Ui, world: &World<'_>, statistics: &Statistics) {
         ("Mutations", format::count(totals.steps as f64)),
         ("Rays", format::count(totals.rays as f64)),
         ("Shadow rays", format::count(totals.shadow_rays as f64)),
-        ("Longest stay", format!("{} steps", format::count(totals.longest_dwell as f64))),
+        ("Longest stay", format::steps(totals.longest_dwell)),
         ("Running for", format::duration(seconds)),
         ("Chains, threads", format!("{chains}, {}", statistics.threads)),
     ];

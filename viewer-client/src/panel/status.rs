@@ -111,7 +111,12 @@ fn figures(ui: &mut Ui, world: &World<'_>) {
     let counts = world.store.counts();
     let statistics = world.status.statistics.as_ref();
     if let Some(statistics) = statistics.filter(|s| s.memory_bytes > 0) {
-        figure(ui, "daemon", &format::bytes(statistics.memory_bytes), "Memory of the daemon");
+        let (name, tip) = if world.status.embedded {
+            ("program", "Memory of this program, which viewer and daemon share")
+        } else {
+            ("daemon", "Memory of the daemon")
+        };
+        figure(ui, name, &format::bytes(statistics.memory_bytes), tip);
     }
     let held = format::bytes(world.store.byte_len() as u64);
     figure(ui, "viewer", &held, "Memory for paths in this viewer, graphics memory included");
@@ -129,14 +134,13 @@ fn figures(ui: &mut Ui, world: &World<'_>) {
     let bytes = format::bytes(world.status.byte_rate.per_second() as u64);
     let paths = format::count(world.status.path_rate.per_second());
     figure(ui, "paths/s", &paths, &format!("Paths received a second, {bytes}/s"));
-    let current = statistics.filter(|_| world.status.is_connected());
-    let mutations = current.map_or(0.0, |s| s.mutations_per_second);
     if let Some(latency) = world.status.latency.filter(|_| world.status.is_connected()) {
         let milliseconds = 1e3 * latency.as_secs_f32();
         let value = format!("{} ms", format::value(milliseconds));
         figure(ui, "latency", &value, "How long the daemon took to answer, way and back");
     }
-    figure(ui, "mutations/s", &format::count(mutations), "Steps of all chains a second");
+    let mutations = format::count(world.status.mutation_rate());
+    figure(ui, "mutations/s", &mutations, "Steps of all chains a second");
 }
 
 /// Every queue of the daemon, with its bound.

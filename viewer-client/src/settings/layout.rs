@@ -39,8 +39,8 @@ pub struct Layout {
 pub const SCALES: std::ops::RangeInclusive<u16> = 50..=300;
 /// Widths of a side in points.
 pub const WIDTHS: std::ops::RangeInclusive<u16> = 200..=900;
-/// Usual widths of the sides.
-const USUAL_WIDTHS: [u16; 2] = [260, 352];
+/// Usual widths of the sides: what their widest rows need, or they would grow once these are shown.
+const USUAL_WIDTHS: [u16; 2] = [276, 380];
 
 impl Default for Layout {
     fn default() -> Self {

@@ -7,10 +7,10 @@ mod stays;
 use common::{Diagnostics, Statistics};
 use egui::{Label, RichText, Ui};
 
-use super::Panel;
 use super::image::layer_button;
 use super::widgets::{dot, empty_state, reading};
-use crate::command::{Command, FilterCommand, ImageCommand, Layer};
+use super::{Panel, reveal};
+use crate::command::{Command, FilterCommand, ImageCommand, Layer, PanelName};
 use crate::format;
 use crate::region::{self, Region};
 use crate::theme;
@@ -126,6 +126,7 @@ fn verdict(ui: &mut Ui, world: &World<'_>, diagnostics: &Diagnostics, commands: 
         let map = ui.button("Show where").on_hover_text("The map of disagreement on the image");
         if map.clicked() {
             commands.push(Command::Image(ImageCommand::Show(Layer::Disagreement)));
+            reveal(ui, PanelName::Image, world, commands);
         }
         let paths = ui.button("Paths to the worst").on_hover_text("Filters by the worst tile");
         if paths.clicked() && world.film.size() != [0, 0] {

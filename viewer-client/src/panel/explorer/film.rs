@@ -40,8 +40,7 @@ impl ExplorerFilm {
         self.refresh(ui, world, look);
         let Some(texture) = &self.texture else { return };
         ui.add_space(6.0);
-        let caption =
-            format!("Exploration, not the image: {} steps", format::count(film.steps() as f64));
+        let caption = format!("Exploration, not the image: {}", format::steps(film.steps()));
         ui.label(RichText::new(caption).small().color(theme::BUSY));
         let across = WIDTH.min(ui.available_width());
         let size = vec2(across, across * height as f32 / width as f32);

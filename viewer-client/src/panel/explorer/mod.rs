@@ -103,8 +103,9 @@ fn lease(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
             commands.push(Command::Layout(LayoutCommand::Seen(switch)));
         }
     }
-    if let Some(remark) = steering.remarks.back() {
-        ui.label(RichText::new(remark).small().weak()).on_hover_text("What the daemon said last");
+    if let Some(Ok(remark) | Err(remark)) = &steering.remark {
+        let text = RichText::new(format::sentence(remark)).small().weak();
+        ui.label(text).on_hover_text("What the daemon said last");
     }
 }
 

@@ -1,6 +1,6 @@
 //! One step of the explorer: what was changed, how probable its acceptance was, and its fate.
 
-use common::{FocusOutcome, VertexRecord};
+use common::{FocusOutcome, FocusStep, VertexRecord};
 use egui::{
     Align2, Color32, FontId, Rect, RichText, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2,
     vec2,
@@ -30,7 +30,7 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, moment: &Moment, commands: &m
             commands.push(Command::Path(PathCommand::Explored));
         }
     });
-    let (word, color) = fate(world, step.outcome);
+    let (word, color) = fate(world, step);
     ui.label(RichText::new(word).color(color).strong());
     acceptance_bar(ui, step.acceptance as f32, color);
     classes(ui, moment);
@@ -43,10 +43,12 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, moment: &Moment, commands: &m
 }
 
 /// What became of a step, in words and a colour; the words say it all.
-pub(super) fn fate(world: &World<'_>, outcome: FocusOutcome) -> (String, Color32) {
-    match outcome {
-        FocusOutcome::Accepted => ("Accepted".to_owned(), theme::GOOD),
-        FocusOutcome::Rejected => ("Rejected".to_owned(), theme::BUSY),
+pub(super) fn fate(world: &World<'_>, step: &FocusStep) -> (String, Color32) {
+    // A fan moves nowhere.
+    let word = |word, would_be: &str| if step.fan { would_be } else { word }.to_owned();
+    match step.outcome {
+        FocusOutcome::Accepted => (word("Accepted", "Would be accepted"), theme::GOOD),
+        FocusOutcome::Rejected => (word("Rejected", "Would be rejected"), theme::BUSY),
         FocusOutcome::Failed(reason) => {
             let reason = world.failure_reason(usize::from(reason));
             (format!("Failed: {reason}"), theme::BAD)

@@ -33,7 +33,7 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) 
     for (i, moment) in moments.range(first..last).enumerate() {
         let step = &moment.step;
         let x = rect.left() + (i as f32 + 0.5) * PITCH;
-        let (_, color) = fate(world, step.outcome);
+        let (_, color) = fate(world, step);
         let failed = matches!(step.outcome, FocusOutcome::Failed(_));
         let height = if failed { 5.0 } else { 7.0 + step.acceptance as f32 * (HEIGHT - 17.0) };
         let foot = rect.bottom() - 7.0;
@@ -80,7 +80,7 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) 
 /// What a bar stands for, and how bars are to be read.
 fn explain(ui: &mut Ui, world: &World<'_>, pointed: Option<&Moment>) {
     if let Some(Moment { step, .. }) = pointed {
-        let (word, _) = fate(world, step.outcome);
+        let (word, _) = fate(world, step);
         let strategy = world.strategy_name(usize::from(step.strategy.0));
         ui.label(RichText::new(format!("No. {}: {strategy}", step.number)).strong());
         ui.label(format!("{word}, a = {:.4}", step.acceptance));

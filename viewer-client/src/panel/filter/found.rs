@@ -4,7 +4,7 @@ use common::{
     Comparison, ExplorerCommand, Filter, FilterCounts, Leaf, NearestMiss, Order, Seed, Shortfall,
     VertexTest, Volume,
 };
-use egui::{Label, RichText, Ui};
+use egui::{FontFamily, Label, RichText, Ui};
 
 use crate::command::{Command, FilterCommand, Switch};
 use crate::format;
@@ -87,7 +87,8 @@ fn nothing_found(
     ui.label(RichText::new("Alone, each would let through:").small().weak());
     for (condition, &count) in conditions.iter().zip(&counts.conditions) {
         let share = format::percent(count as f64, counts.seen as f64);
-        let text = RichText::new(format!("{share:>8}  {condition}")).monospace().small();
+        let text = RichText::new(format!("{share:>8}  {condition}"));
+        let text = text.small().family(FontFamily::Monospace);
         let text = if count == 0 { text.strong() } else { text };
         ui.add(Label::new(text).truncate()).on_hover_text(condition);
     }

@@ -97,7 +97,11 @@ fn figures(ui: &mut Ui, world: &World<'_>, selection: &Selection, names: &Names<
             "Shares of width and height, from the upper left corner",
         ),
         ("Accepted at", format!("a = {:.4}", h.acceptance), "Of the proposal that made it"),
-        ("Stayed", format!("{} steps", h.dwell), "Steps that the chain stayed here while shown"),
+        (
+            "Stayed",
+            format::steps(u64::from(h.dwell)),
+            "Steps that the chain stayed here while shown",
+        ),
         ("Length", format!("{length:.4}"), "All edges together, in the units of the scene file"),
     ];
     for (label, value, tip) in lines {

@@ -55,15 +55,16 @@ fn the_connection_menu_leads_back_and_passes_on() {
     stage.recent = vec!["render-box:50061".to_owned(), "127.0.0.1:50061".to_owned()];
     let mut harness = stage.harness();
     harness.run();
-    for label in ["render-box:50061", "Copy link to this view", "Screenshot"] {
+    for label in ["The built-in daemon", "render-box:50061", "Copy link to this view", "Screenshot"]
+    {
         harness.get_by_label("Connection").click();
         harness.run();
         harness.get_by_label(label).click();
         harness.run();
     }
-    let expected = ["connect render-box:50061", "share", "screenshot lvis.png"];
+    let expected = ["connect home", "connect render-box:50061", "share", "screenshot lvis.png"];
     let said: Vec<String> = harness.state().said.iter().map(ToString::to_string).collect();
-    assert_eq!(said, expected, "three entries");
+    assert_eq!(said, expected, "four entries");
 }
 
 #[test]

@@ -83,6 +83,7 @@ impl Stage {
             moment: self.status.steering.focus.moment(self.scrub),
             scrub: self.scrub,
             recent: &self.recent,
+            has_home: true,
             playback: self.playback.as_ref(),
             counted: None,
             model: self.model.as_ref(),

@@ -19,6 +19,7 @@ use crate::world::World;
 const KEPT: f32 = 2.5;
 const NEW: f32 = 4.0;
 const RIM: f32 = 2.0;
+const FAN: f32 = 1.4;
 /// Most proposals of a fan that are drawn.
 const MOST_OF_FAN: usize = 200;
 
@@ -39,16 +40,35 @@ pub(super) fn paint(painter: &Painter, projector: &Projector, rect: Rect, world:
     key(painter, rect, moment);
 }
 
-/// All proposals of the fan that `moment` belongs to, fainter the less likely they are.
+/// All proposals of the fan that `moment` belongs to, fainter the less likely they are; those that
+/// failed, as far as they came.
 fn fan(pen: &Pen<'_>, world: &World<'_>, moment: &Moment) {
     let moments = world.status.steering.focus.moments();
     let same = |other: &&Moment| other.step.fan && other.step.id == moment.step.id;
     for other in moments.iter().rev().take_while(same).take(MOST_OF_FAN) {
         if let Some(proposal) = other.proposal() {
             let opacity = 0.15 + 0.6 * other.step.acceptance as f32;
-            pen.line(&proposal, Stroke::new(1.0, theme::PROPOSED.gamma_multiply(opacity)));
+            pen.line(&proposal, Stroke::new(FAN, theme::PROPOSED.gamma_multiply(opacity)));
+        } else {
+            let stroke = Stroke::new(FAN, theme::BAD.gamma_multiply(0.5));
+            for side in attempt(other) {
+                pen.line(&side, stroke);
+            }
+            if let Some(blocker) = other.step.blocker {
+                pen.cross(blocker.into(), 3.0, theme::BAD);
+            }
         }
     }
+}
+
+/// How far a proposal came that failed: from the last vertex kept on the light side, and from the first
+/// one on the eye side.
+fn attempt(Moment { before, step }: &Moment) -> [Vec<VertexRecord>; 2] {
+    let before = before.vertices.as_slice();
+    let from_light = step.kept_light.checked_sub(1).and_then(|last| before.get(last));
+    let from_eye = before.get(before.len().saturating_sub(step.kept_eye));
+    let light = from_light.into_iter().chain(&step.inserted).copied().collect();
+    [light, from_eye.into_iter().chain(&step.eye_side).copied().collect()]
 }
 
 fn step(pen: &Pen<'_>, moment: &Moment) {
@@ -72,12 +92,9 @@ fn step(pen: &Pen<'_>, moment: &Moment) {
         let to = (proposal.len() - step.kept_eye.min(proposal.len()) + 1).min(proposal.len());
         pen.line(&proposal[from..to], stroke);
     } else {
-        let from_light = before[..kept_light].last();
-        let light: Vec<_> = from_light.into_iter().chain(&step.inserted).copied().collect();
-        let from_eye = before.get(kept_from);
-        let eye: Vec<_> = from_eye.into_iter().chain(&step.eye_side).copied().collect();
-        pen.line(&light, stroke);
-        pen.line(&eye, stroke);
+        for side in attempt(moment) {
+            pen.line(&side, stroke);
+        }
     }
     pen.rings(&step.inserted);
     pen.rings(&step.eye_side);

@@ -132,7 +132,11 @@ fn tell(ui: &mut Ui, world: &World<'_>, found: &Selection) {
         ui.label(names.strategy(&found.header));
     });
     let h = &found.header;
-    ui.label(format!("Luminance {:.3e}, stayed {} steps", h.luminance, h.dwell));
+    ui.label(format!(
+        "Luminance {:.3e}, stayed {}",
+        h.luminance,
+        format::steps(u64::from(h.dwell))
+    ));
     ui.label(RichText::new(format!("Path {}", h.id)).weak());
     let (_, of) = found.place;
     let more = if of > 1 { format!(" (1 of {of} here)") } else { String::new() };
