@@ -8,6 +8,7 @@ mod blend;
 mod composite;
 mod lines;
 mod mesh;
+mod pile;
 mod pipeline;
 mod progress;
 mod renderer;

@@ -101,6 +101,8 @@ pub(super) enum Ink {
     Opaque,
     /// It is covered as far as the new one is opaque.
     Over,
+    /// It covers the new one as far as it is opaque.
+    Under,
     /// Sums of weighted colours, and of weights, into targets of their own.
     Weighed,
 }
@@ -121,6 +123,13 @@ impl Ink {
         },
     };
 
+    /// Both colours are multiplied by their opacity.
+    const UNDER: wgpu::BlendComponent = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::OneMinusDstAlpha,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Add,
+    };
+
     fn targets(self) -> Vec<Option<wgpu::ColorTargetState>> {
         let over = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
         let write_mask = wgpu::ColorWrites::ALL;
@@ -128,6 +137,10 @@ impl Ink {
         match self {
             Self::Opaque => vec![target(COLOR_FORMAT, None)],
             Self::Over => vec![target(COLOR_FORMAT, Some(over))],
+            Self::Under => {
+                let under = wgpu::BlendState { color: Self::UNDER, alpha: Self::UNDER };
+                vec![target(COLOR_FORMAT, Some(under))]
+            }
             Self::Weighed => vec![
                 target(COLOR_FORMAT, Some(Self::WEIGHED)),
                 target(WEIGHT_FORMAT, Some(Self::WEIGHED)),

@@ -84,6 +84,16 @@ impl Picture {
         Self { paths, ..self.clone() }
     }
 
+    /// The same for a picture that takes several frames, in whatever order comes out cheapest: topmost
+    /// first where the newest paths lie on top.
+    pub(super) fn steps_in_parts(&self) -> Vec<(Layer, PageRange)> {
+        let mut steps = self.steps();
+        if self.crossing == Crossing::Stacked {
+            steps.reverse();
+        }
+        steps
+    }
+
     /// Everything to draw of the paths: oldest first, because newer paths lie on top.
     pub(super) fn steps(&self) -> Vec<(Layer, PageRange)> {
         let of_layer = |layer| self.paths.iter().rev().map(move |range| (layer, *range));

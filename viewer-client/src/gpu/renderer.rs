@@ -10,9 +10,13 @@ use super::blend::Blend;
 use super::composite::Composite;
 use super::lines::{Layer, Lines, PageRange, Uploaded};
 use super::mesh::Mesh;
+use super::pile::Piling;
 use super::pipeline::FrameGroup;
 use super::progress::{Allowance, Crossing, Picture};
 use super::target::{Part, Target};
+
+/// Points of paths after which a sheet is laid under the pile.
+const SHEET_POINTS: usize = 1 << 16;
 
 /// How well to draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +36,7 @@ pub struct Renderer {
     mesh: Mesh,
     lines: Lines,
     blend: Blend,
+    piling: Piling,
     composite: Composite,
     /// What the window shows.
     shown: Option<Shown>,
@@ -81,6 +86,7 @@ impl Renderer {
         Self {
             mesh: Mesh::new(&device, &queue, &frame),
             blend: Blend::new(&device, &frame),
+            piling: Piling::new(&device, &frame),
             lines: Lines::new(&device, &frame, page_points),
             composite: Composite::new(&device, &frame, format),
             frame,
@@ -196,10 +202,10 @@ impl Renderer {
     fn go_on(&mut self, encoder: &mut wgpu::CommandEncoder, wanted: &Picture) {
         let coming = self.coming.take().filter(|coming| coming.picture.same_view(wanted));
         let mut coming = coming.unwrap_or_else(|| Coming {
-            target: self.new_target(wanted),
+            target: self.new_target_in_parts(wanted),
             picture: wanted.clone(),
             content: self.content,
-            steps: wanted.steps(),
+            steps: wanted.steps_in_parts(),
             next: 0,
         });
         self.frame.write(&self.queue, &coming.picture.uniforms);
@@ -211,11 +217,19 @@ impl Renderer {
         }
         let part = Part { first: coming.next == 0, last: end == coming.steps.len() };
         let steps = coming.steps.get(coming.next..end).unwrap_or_default();
-        self.draw(encoder, (&coming.target, &coming.picture), steps, part);
+        match wanted.crossing {
+            Crossing::Stacked => {
+                self.pile_up(encoder, (&coming.target, &coming.picture), steps, part);
+            }
+            Crossing::Weighed => {
+                self.draw(encoder, (&coming.target, &coming.picture), steps, part);
+            }
+        }
         coming.next = end;
         if part.last {
             let Coming { target, picture, content, .. } = coming;
             self.composite.set_picture(&self.device, target.resolved());
+            let target = target.without_pile();
             self.shown = Some(Shown { target, picture, content, whole: true });
         } else {
             self.coming = Some(coming);
@@ -224,6 +238,75 @@ impl Renderer {
 
     fn new_target(&self, picture: &Picture) -> Target {
         Target::new(&self.device, picture.size, self.frame.samples, picture.crossing)
+    }
+
+    /// Where a picture is drawn that takes several frames.
+    fn new_target_in_parts(&self, picture: &Picture) -> Target {
+        let target = self.new_target(picture);
+        match picture.crossing {
+            Crossing::Stacked => target.with_pile(&self.device, picture.size, self.frame.samples),
+            Crossing::Weighed => target,
+        }
+    }
+
+    /// Draws a part of a picture of several frames: these steps, the topmost first, as sheets under
+    /// those that are there; and at last the pile between what lies under and over the paths.
+    fn pile_up(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        (target, picture): (&Target, &Picture),
+        steps: &[(Layer, PageRange)],
+        part: Part,
+    ) {
+        let Some(pile) = target.pile() else { return };
+        if part.first {
+            // For their depth: surfaces hide paths.
+            let mut pass = target.begin(encoder, Part { first: true, last: false });
+            pass.set_bind_group(0, &self.frame.group, &[]);
+            self.begin(&mut pass, picture);
+        }
+        let mut first = part.first;
+        for sheet in self.sheets(steps) {
+            let mut pass = target.begin_sheet(encoder, pile);
+            pass.set_bind_group(0, &self.frame.group, &[]);
+            if !first {
+                self.piling.shut(&self.device, &mut pass, pile);
+            }
+            for (layer, range) in sheet.iter().rev() {
+                self.lines.draw_page(&mut pass, *range, *layer, Crossing::Stacked);
+            }
+            drop(pass);
+            let mut pass = target.begin_pile(encoder, pile, first);
+            pass.set_bind_group(0, &self.frame.group, &[]);
+            self.piling.under(&self.device, &mut pass, pile);
+            first = false;
+        }
+        if part.last {
+            let mut pass = target.begin(encoder, Part { first: true, last: true });
+            pass.set_bind_group(0, &self.frame.group, &[]);
+            self.begin(&mut pass, picture);
+            self.piling.over(&self.device, &mut pass, pile);
+            self.end(&mut pass, picture);
+        }
+    }
+
+    /// Steps that share a sheet: few enough for the next ones to profit from what they fill.
+    fn sheets<'a>(
+        &'a self,
+        steps: &'a [(Layer, PageRange)],
+    ) -> impl Iterator<Item = &'a [(Layer, PageRange)]> {
+        let mut rest = steps;
+        std::iter::from_fn(move || {
+            let mut points = 0;
+            let fits = |(_, range): &&(Layer, PageRange)| {
+                let room = points < SHEET_POINTS;
+                points += self.lines.points_of(*range);
+                room
+            };
+            let (sheet, others) = rest.split_at(rest.iter().take_while(fits).count());
+            rest = others;
+            (!sheet.is_empty()).then_some(sheet)
+        })
     }
 
     /// Draws a part of a picture: what lies under the paths, these steps of the paths, and what lies
