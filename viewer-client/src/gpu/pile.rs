@@ -38,7 +38,7 @@ impl Piling {
             recipe.build(device, frame)
         };
         Self {
-            under: build("under", "vs_pile", "fs_pile", Ink::Under),
+            under: build("under", "vs_pile", "fs_sheet", Ink::Under),
             over: build("over", "vs_pile", "fs_pile", Ink::Over),
             shut: build("shut", "vs_near", "fs_saturated", Ink::Opaque),
             layout,

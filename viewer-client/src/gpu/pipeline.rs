@@ -101,7 +101,7 @@ pub(super) enum Ink {
     Opaque,
     /// It is covered as far as the new one is opaque.
     Over,
-    /// It covers the new one as far as it is opaque.
+    /// It covers the new one but for what shines through it, which its alpha tells.
     Under,
     /// Sums of weighted colours, and of weights, into targets of their own.
     Weighed,
@@ -123,11 +123,14 @@ impl Ink {
         },
     };
 
-    /// Both colours are multiplied by their opacity.
-    const UNDER: wgpu::BlendComponent = wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::OneMinusDstAlpha,
-        dst_factor: wgpu::BlendFactor::One,
-        operation: wgpu::BlendOperation::Add,
+    /// The product of what shines through is alpha.
+    const UNDER: wgpu::BlendState = wgpu::BlendState {
+        color: wgpu::BlendComponent {
+            src_factor: wgpu::BlendFactor::DstAlpha,
+            dst_factor: wgpu::BlendFactor::One,
+            operation: wgpu::BlendOperation::Add,
+        },
+        alpha: Self::WEIGHED.alpha,
     };
 
     fn targets(self) -> Vec<Option<wgpu::ColorTargetState>> {
@@ -137,10 +140,7 @@ impl Ink {
         match self {
             Self::Opaque => vec![target(COLOR_FORMAT, None)],
             Self::Over => vec![target(COLOR_FORMAT, Some(over))],
-            Self::Under => {
-                let under = wgpu::BlendState { color: Self::UNDER, alpha: Self::UNDER };
-                vec![target(COLOR_FORMAT, Some(under))]
-            }
+            Self::Under => vec![target(COLOR_FORMAT, Some(Self::UNDER))],
             Self::Weighed => vec![
                 target(COLOR_FORMAT, Some(Self::WEIGHED)),
                 target(WEIGHT_FORMAT, Some(Self::WEIGHED)),

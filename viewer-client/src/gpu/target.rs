@@ -120,7 +120,8 @@ impl Target {
         first: bool,
     ) -> wgpu::RenderPass<'a> {
         let part = Part { first, last: false };
-        let attachment = pile.whole.attachment(part, wgpu::Color::TRANSPARENT);
+        // Everything shines through.
+        let attachment = pile.whole.attachment(part, wgpu::Color::BLACK);
         self.pass(encoder, "pile", &[Some(attachment)], Part { first: false, last: false })
     }
 

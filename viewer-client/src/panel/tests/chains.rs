@@ -1,5 +1,6 @@
 //! Counts and diagnostics of the chains.
 
+use common::ChainState;
 use egui_kittest::kittest::Queryable as _;
 
 use super::image::image_stage;
@@ -7,6 +8,7 @@ use super::{Stage, diagnosed, shows, statistics};
 use crate::command::{Command, ImageCommand};
 use crate::panel::hover::{self, Pointed};
 use crate::panel::{diagnostics, statistics as counts};
+use crate::status::LinkState;
 use crate::synthetic::welcome;
 
 #[test]
@@ -14,6 +16,7 @@ fn statistics_show_rates_and_fates() {
     let mut stage = Stage::new(counts::StatisticsPanel);
     stage.status.welcome(welcome());
     stage.status.statistics(statistics());
+    stage.status.link = LinkState::Connected;
     let mut harness = stage.harness();
     harness.run();
     for text in [
@@ -29,6 +32,10 @@ fn statistics_show_rates_and_fates() {
     ] {
         assert!(shows(&harness, text), "`{text}` is missing");
     }
+    let paused = ChainState { running: false, ..ChainState::default() };
+    harness.state_mut().status.steering.chains = Some(paused);
+    harness.run();
+    assert!(!shows(&harness, "1.23 M"), "chains that rest make no mutations");
     harness.get_by_label("lens").hover();
     harness.run_steps(30);
     assert!(shows(&harness, "failed: off film"), "the reasons come with the pointer");
