@@ -67,6 +67,11 @@ impl<P: Point> PrimaryChain<P> {
         &self.statistics
     }
 
+    /// Steps since the current sample was accepted.
+    pub fn stay(&self) -> u64 {
+        self.steps - self.arrival
+    }
+
     /// The current sample.
     #[cfg(test)]
     pub(super) fn current(&self) -> &Sample {
@@ -118,7 +123,7 @@ impl<P: Point> PrimaryChain<P> {
             self.flush(balance, film);
             std::mem::swap(&mut self.current, &mut self.proposal);
             self.pending = gathered;
-            self.statistics.leave(self.steps - self.arrival);
+            self.statistics.leave(self.stay());
             self.arrival = self.steps;
             self.point.accept();
             return Ok((a, true));

@@ -255,6 +255,26 @@ fn steps_leave_the_target_alone() {
     assert!(z.abs() < 5.0, "the chains drift at z = {z:.2}");
 }
 
+/// All is dark, so that a chain stays where it began.
+struct Dark;
+
+impl Sampler for Dark {
+    fn sample(&mut self, _: &mut impl Numbers, sample: &mut Sample) {
+        *sample = Sample::default();
+    }
+}
+
+#[test]
+fn a_stay_counts_while_it_lasts() {
+    let balance = Balance { normalization: 1.0, large: 0.02 };
+    let (mut chain, mut film) = (toy_chain(coordinates(0), 0, balance.large), Film::new(2, 1));
+    for _ in 0..70 {
+        chain.step(&mut Dark, balance, &mut film);
+    }
+    assert_eq!(chain.stay(), 70, "the start is never left");
+    assert_eq!(chain.statistics().longest_dwell, 0, "and no stay has ended");
+}
+
 /// Coordinates are born at zero.
 struct BornAtZero(Rng);
 

@@ -144,7 +144,11 @@ impl PrimaryEnsemble {
     pub fn statistics(&self) -> ChainStatistics {
         let mut sum = ChainStatistics::new(STEPS.len());
         for lane in &self.lanes {
-            lane.chains.iter().for_each(|chain| sum.add(chain.statistics()));
+            for chain in &lane.chains {
+                sum.add(chain.statistics());
+                // A chain that never left where it is has the longest stay of all.
+                sum.leave(chain.stay());
+            }
             sum.rays += lane.rays.rays;
             sum.shadow_rays += lane.rays.shadow_rays;
         }
