@@ -55,7 +55,7 @@ impl Panel for ImagePanel {
             empty_state(
                 ui,
                 "No image yet",
-                "It appears as soon as a daemon is connected, and gets better by the second.",
+                "It appears once the daemon has found where the light is and its chains have begun.",
             );
             return;
         }
