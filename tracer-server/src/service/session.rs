@@ -1,5 +1,6 @@
 //! One viewer, from hello to goodbye.
 
+use std::error::Error as _;
 use std::sync::Arc;
 
 use common::{
@@ -207,6 +208,10 @@ impl Session {
         let event = match message {
             Ok(Some(message)) => ViewerEvent::try_from(message).map_err(|error| refusal(&error)),
             Ok(None) => return Heard::Silent,
+            // Bytes that are no message have no cause further down; a transport that breaks has one.
+            Err(status) if status.source().is_some() => {
+                return Heard::Over(End::Left("its connection broke".to_owned()));
+            }
             Err(status) => Err(unreadable(&status)),
         };
         match event {
