@@ -51,14 +51,14 @@ cloud shown 1200
 image fit
 EOF
 
-shot hint cornell 1280x720 760x420+345+36 20000 <<'EOF'
+shot hint cornell 1280x720 760x420+372+36 20000 <<'EOF'
 panel path off
 panel explorer off
 hint on
 cloud shown 400
 EOF
 
-shot paths caustic 1280x720 932x720+350+0 60000 <<'EOF'
+shot paths caustic 1280x720 902x720+378+0 60000 <<'EOF'
 panel path off
 panel explorer off
 cloud color strategy
@@ -66,7 +66,7 @@ cloud shown 700
 scene opacity 0.4
 EOF
 
-shot throughput caustic 1280x720 932x720+350+0 60000 <<'EOF'
+shot throughput caustic 1280x720 902x720+378+0 60000 <<'EOF'
 panel path off
 panel explorer off
 cloud color throughput
@@ -75,7 +75,7 @@ cloud shown 900
 scene opacity 0.4
 EOF
 
-shot shading caustic 1280x720 932x720+350+0 5000 <<'EOF'
+shot shading caustic 1280x720 902x720+378+0 5000 <<'EOF'
 panel path off
 panel explorer off
 cloud shown 60
@@ -119,6 +119,25 @@ filter add any 0.35 0 0.35 0.28
 filter set lpe "C.*DS+L"
 EOF
 
+shot builder caustic 1280x720 284x600+996+34 1200 <<'EOF'
+panel cloud off
+panel scene off
+cloud shown 900
+filter set edges >= 4 and (lpe "C.*DS+L" or any on material "glass")
+EOF
+
+shot fan door 1280x720 all 60000 <<'EOF'
+panel image off
+panel path off
+panel statistics off
+panel diagnostics off
+cloud opacity 0.05
+camera through on
+path pick 0.1 0 0.2
+explorer seed newest
+explorer fan 0 60
+EOF
+
 shot palette cornell 1280x720 all 5000 <<'EOF'
 panel path off
 panel explorer off
@@ -127,7 +146,7 @@ panel diagnostics off
 palette on
 EOF
 
-shot image cornell 1280x900 372x640+0+34 4000 <<'EOF'
+shot image cornell 1280x900 380x640+0+34 4000 <<'EOF'
 panel path off
 panel explorer off
 filter set film in rect(0.3, 0.3, 0.6, 0.5)
@@ -142,7 +161,7 @@ filter set film in rect(0.72, 0.78, 0.86, 0.9)
 cloud shown 800
 EOF
 
-shot false-colour caustic 1280x900 372x640+0+34 100000 <<'EOF'
+shot false-colour caustic 1280x900 380x640+0+34 100000 <<'EOF'
 panel path off
 panel explorer off
 image tone false
@@ -151,33 +170,33 @@ EOF
 # The first picture of a scene, as the reference of a later one.
 echo "image save short.exr" >"$work/save"
 look --scene cornell --wait-paths 20000 --run save
-shot compare cornell 1280x900 372x760+0+34 100000 <<'EOF'
+shot compare cornell 1280x900 380x760+0+34 100000 <<'EOF'
 panel path off
 panel explorer off
 image reference short.exr
 image exposure 1
 EOF
 
-shot chains door 1280x1080 372x1000+0+34 150000 <<'EOF'
+shot chains door 1280x1080 380x1000+0+34 150000 <<'EOF'
 panel path off
 panel explorer off
 panel image off
 panel statistics off
 EOF
 
-shot map-dwell door 1280x900 372x640+0+34 150000 <<'EOF'
+shot map-dwell door 1280x900 380x640+0+34 150000 <<'EOF'
 panel path off
 panel explorer off
 image show dwell
 EOF
 
-shot map-disagreement door 1280x900 372x640+0+34 150000 <<'EOF'
+shot map-disagreement door 1280x900 380x640+0+34 150000 <<'EOF'
 panel path off
 panel explorer off
 image show disagreement
 EOF
 
-shot statistics caustic 1280x720 372x420+0+34 60000 <<'EOF'
+shot statistics caustic 1280x720 380x420+0+34 60000 <<'EOF'
 panel path off
 panel explorer off
 panel image off
