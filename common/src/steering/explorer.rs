@@ -133,7 +133,7 @@ impl FocusPath {
         if self.next != step.number || self.vertices.len() != step.length {
             return None;
         }
-        let next = step.number + 1;
+        let next = step.number.checked_add(1)?;
         if step.fan || step.outcome != FocusOutcome::Accepted {
             let dwell = self.header.dwell.saturating_add(u32::from(!step.fan));
             let header = PathHeader { dwell, ..self.header };
