@@ -5,9 +5,7 @@
 
 @vertex
 fn vs_blend(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    // One triangle that covers the picture.
-    let corner = vec2<f32>(f32((index << 1u) & 2u), f32(index & 2u));
-    return vec4<f32>(corner * 2.0 - 1.0, 0.0, 1.0);
+    return vec4<f32>(covering(index), 0.0, 1.0);
 }
 
 @fragment

@@ -10,11 +10,10 @@ struct Pixel {
 
 @vertex
 fn vs_composite(@builtin(vertex_index) index: u32) -> Pixel {
-    // One triangle that covers the window.
-    let corner = vec2<f32>(f32((index << 1u) & 2u), f32(index & 2u));
+    let corner = covering(index);
     var out: Pixel;
-    out.position = vec4<f32>(corner * 2.0 - 1.0, 0.0, 1.0);
-    out.uv = vec2<f32>(corner.x, 1.0 - corner.y);
+    out.position = vec4<f32>(corner, 0.0, 1.0);
+    out.uv = vec2<f32>(0.5 + 0.5 * corner.x, 0.5 - 0.5 * corner.y);
     return out;
 }
 

@@ -39,3 +39,9 @@ struct Frame {
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
+
+// Corner number `index` of one triangle that covers the picture, in clip space.
+fn covering(index: u32) -> vec2<f32> {
+    return vec2<f32>(f32((index << 1u) & 2u), f32(index & 2u)) * 2.0 - 1.0;
+}
+

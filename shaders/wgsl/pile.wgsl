@@ -6,20 +6,15 @@
 // drawing.
 const FAINTEST: f32 = 0.0006;
 
-fn corner(index: u32) -> vec2<f32> {
-    // One triangle that covers the picture.
-    return vec2<f32>(f32((index << 1u) & 2u), f32(index & 2u)) * 2.0 - 1.0;
-}
-
 @vertex
 fn vs_pile(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    return vec4<f32>(corner(index), 0.0, 1.0);
+    return vec4<f32>(covering(index), 0.0, 1.0);
 }
 
 // Nearer than anything: depth is reversed.
 @vertex
 fn vs_near(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    return vec4<f32>(corner(index), 1.0, 1.0);
+    return vec4<f32>(covering(index), 1.0, 1.0);
 }
 
 // A sheet: colours times their opacity, and their opacity.

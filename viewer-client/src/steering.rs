@@ -218,4 +218,14 @@ pub(crate) mod tests {
         focus.miss(5);
         assert_eq!(focus.missed, 7, "what is missing is counted");
     }
+
+    #[test]
+    fn a_step_after_which_no_number_is_left_is_refused() {
+        let mut focus = Focus::default();
+        let vertices = (0..4).map(vertex).collect();
+        focus.take_path(FocusPath { vertices, next: u64::MAX, ..FocusPath::default() });
+        let last = FocusStep { number: u64::MAX, ..step(0, FocusOutcome::Rejected, 4) };
+        focus.take_step(last);
+        assert_eq!((focus.steps, focus.missed), (0, 1), "left out, and counted");
+    }
 }

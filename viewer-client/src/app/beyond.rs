@@ -55,13 +55,8 @@ impl Viewer {
             let shared = share::read(place).map_err(|error| error.to_string())?;
             (shared.address, shared.commands)
         } else if place == HOME {
-            let home = self.desk.home.clone();
-            (
-                home.ok_or(
-                    "There is no daemon inside this program: it was told to watch another.",
-                )?,
-                Vec::new(),
-            )
+            let none = "There is no daemon inside this program: it was told to watch another.";
+            (self.desk.home.clone().ok_or(none)?, Vec::new())
         } else {
             (place.to_owned(), Vec::new())
         };

@@ -6,6 +6,7 @@
 
 mod blend;
 mod composite;
+mod cover;
 mod lines;
 mod mesh;
 mod pile;

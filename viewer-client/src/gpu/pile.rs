@@ -7,47 +7,34 @@
 
 use shaders::PILE;
 
-use super::pipeline::{FrameGroup, Ink, Recipe, module};
+use super::cover::Cover;
+use super::pipeline::{FrameGroup, Ink, module};
 use super::target::Pile;
 
-/// The pipelines, and what they read.
+/// What lays sheets and piles.
 #[derive(Debug)]
 pub(super) struct Piling {
-    under: wgpu::RenderPipeline,
-    over: wgpu::RenderPipeline,
-    shut: wgpu::RenderPipeline,
-    layout: wgpu::BindGroupLayout,
+    under: Cover,
+    over: Cover,
+    shut: Cover,
 }
 
 impl Piling {
     pub(super) fn new(device: &wgpu::Device, frame: &FrameGroup) -> Self {
-        let layout = layout(device);
         let module = module(device, PILE);
-        let build = |label, vertex, fragment, ink| {
-            let recipe = Recipe {
-                label,
-                module: &module,
-                vertex,
-                fragment,
-                buffers: &[],
-                topology: wgpu::PrimitiveTopology::TriangleList,
-                depth: wgpu::CompareFunction::Always,
-                ink,
-                extra: Some(&layout),
-            };
-            recipe.build(device, frame)
+        let cover = |label, (vertex, fragment), ink| {
+            Cover::new(device, frame, label, (&module, vertex, fragment), ink, 1)
         };
         Self {
-            under: build("under", "vs_pile", "fs_sheet", Ink::Under),
-            over: build("over", "vs_pile", "fs_pile", Ink::Over),
-            shut: build("shut", "vs_near", "fs_saturated", Ink::Opaque),
-            layout,
+            under: cover("under", ("vs_pile", "fs_sheet"), Ink::Under),
+            over: cover("over", ("vs_pile", "fs_pile"), Ink::Over),
+            shut: cover("shut", ("vs_near", "fs_saturated"), Ink::Opaque),
         }
     }
 
     /// Shuts the pixels of an empty sheet that nothing under `pile` would be seen in.
     pub(super) fn shut(&self, device: &wgpu::Device, pass: &mut wgpu::RenderPass<'_>, pile: &Pile) {
-        self.lay(device, pass, (&self.shut, &pile.whole.resolved));
+        self.shut.draw(device, pass, &[&pile.whole.resolved]);
     }
 
     /// Lays the sheet under the pile that `pass` draws into.
@@ -57,46 +44,11 @@ impl Piling {
         pass: &mut wgpu::RenderPass<'_>,
         pile: &Pile,
     ) {
-        self.lay(device, pass, (&self.under, &pile.sheet.resolved));
+        self.under.draw(device, pass, &[&pile.sheet.resolved]);
     }
 
     /// Lays the pile over what `pass` has drawn.
     pub(super) fn over(&self, device: &wgpu::Device, pass: &mut wgpu::RenderPass<'_>, pile: &Pile) {
-        self.lay(device, pass, (&self.over, &pile.whole.resolved));
+        self.over.draw(device, pass, &[&pile.whole.resolved]);
     }
-
-    fn lay(
-        &self,
-        device: &wgpu::Device,
-        pass: &mut wgpu::RenderPass<'_>,
-        (pipeline, read): (&wgpu::RenderPipeline, &wgpu::TextureView),
-    ) {
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("pile"),
-            layout: &self.layout,
-            entries: &[wgpu::BindGroupEntry {
-                binding: 0,
-                resource: wgpu::BindingResource::TextureView(read),
-            }],
-        });
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(1, &group, &[]);
-        pass.draw(0..3, 0..1);
-    }
-}
-
-fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("pile"),
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
-        }],
-    })
 }

@@ -41,13 +41,18 @@ fn statistics_show_rates_and_fates() {
     assert!(shows(&harness, "failed: off film"), "the reasons come with the pointer");
 }
 
-#[test]
-fn chains_that_disagree_raise_an_alarm_that_leads_there() {
+/// Diagnostics of chains that have found an image.
+fn diagnosed_stage() -> Stage {
     let mut stage = Stage::new(diagnostics::DiagnosticsPanel);
     stage.film = image_stage(false).film;
     stage.status.welcome(welcome());
     stage.status.statistics(diagnosed());
-    let mut harness = stage.harness();
+    stage
+}
+
+#[test]
+fn chains_that_disagree_raise_an_alarm_that_leads_there() {
+    let mut harness = diagnosed_stage().harness();
     harness.run();
     for text in [
         "Chains disagree in 0.3 % of the image, R-hat to 1.37",
@@ -80,11 +85,7 @@ fn chains_that_disagree_raise_an_alarm_that_leads_there() {
 
 #[test]
 fn what_is_pointed_at_is_marked_elsewhere() {
-    let mut stage = Stage::new(diagnostics::DiagnosticsPanel);
-    stage.film = image_stage(false).film;
-    stage.status.welcome(welcome());
-    stage.status.statistics(diagnosed());
-    let mut harness = stage.harness();
+    let mut harness = diagnosed_stage().harness();
     harness.run();
     harness.get_by_label("DDD").hover();
     harness.run_steps(40);
