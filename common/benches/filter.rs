@@ -33,7 +33,7 @@ const FILTERS: [&str; 8] = [
 fn main() -> io::Result<()> {
     let batch = paths();
     let scene = FilterScene {
-        frame: SceneFrame { centre: DVec3::ZERO, scale: 1.0 },
+        frame: SceneFrame { centre: DVec3::ZERO, scale: 1.0, light: 1.0 },
         materials: ["wall", "glass", "lamp"].map(str::to_owned).to_vec(),
         background: None,
         strategies: Vec::new(),

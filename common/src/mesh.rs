@@ -5,16 +5,19 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Camera, FilterObject, Rgb};
 
-/// How the coordinates that travel relate to the coordinates of the scene file.
+/// How the coordinates and the light that travel relate to those of the scene file.
 ///
 /// The daemon works, and sends everything, in a frame whose origin is the middle of the scene's
 /// bounding box and whose unit is a power of two times the file's: `scene = (world - centre) * scale`.
+/// Light is divided by another one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SceneFrame {
     /// The middle of the bounding box, in the file's units.
     pub centre: DVec3,
     /// A power of two that makes the largest extent lie in [1024, 2048).
     pub scale: f64,
+    /// A power of two that radiances of the file are divided by; 1 where a daemon does not tell.
+    pub light: f64,
 }
 
 impl SceneFrame {

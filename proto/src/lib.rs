@@ -46,7 +46,7 @@ pub struct ProtocolVersion {
 
 impl ProtocolVersion {
     /// What this crate speaks.
-    pub const CURRENT: Self = Self { major: 1, minor: 3 };
+    pub const CURRENT: Self = Self { major: 1, minor: 4 };
 }
 
 impl std::fmt::Display for ProtocolVersion {

@@ -38,12 +38,10 @@ macro_rules! shader {
 pub const LINES: Shader = shader!("lines");
 /// Lit surfaces.
 pub const MESH: Shader = shader!("mesh");
-/// Paths that were added up, over the surfaces.
+/// Paths that were drawn apart, over the surfaces.
 pub const BLEND: Shader = shader!("blend");
-/// Paths in several sheets, the newest on top.
-pub const PILE: Shader = shader!("pile");
 /// The drawn picture into the window.
 pub const COMPOSITE: Shader = shader!("composite");
 
 /// Every module that ships.
-pub const ALL: [Shader; 5] = [LINES, MESH, BLEND, PILE, COMPOSITE];
+pub const ALL: [Shader; 4] = [LINES, MESH, BLEND, COMPOSITE];

@@ -183,6 +183,7 @@ const RULES: &[Rule] = &[
             "viewer-client/src/model",
             "viewer-client/src/pick",
             "viewer-client/src/playback",
+            "viewer-client/src/raster",
             "viewer-client/src/region",
             "viewer-client/src/selection",
             "viewer-client/src/steering",

@@ -200,12 +200,35 @@ fn long_help() -> String {
     )
 }
 
+/// Endings of scene files.
+const SCENES: [&str; 3] = ["toml", "xml", "obj"];
+
 fn source(text: &str) -> Result<Source, String> {
-    if Path::new(text).is_file() {
-        return Ok(Source::File(text.into()));
+    if text.starts_with(share::SCHEME) {
+        return address_or_link(text).map(Source::Daemon);
     }
-    let no_file = |complaint| format!("there is no such file; for a daemon, {complaint}");
-    address_or_link(text).map(Source::Daemon).map_err(no_file)
+    let path = Path::new(text);
+    if path.is_dir() {
+        return Err(format!(
+            "this is a folder; name a file of paths in it, or open a scene in it with `--scene {text}`"
+        ));
+    }
+    if path.is_file() {
+        let ending = path.extension().unwrap_or_default();
+        return if SCENES.iter().any(|scene| ending.eq_ignore_ascii_case(scene)) {
+            Err(format!("this is a scene, and no file of paths; open it with `--scene {text}`"))
+        } else {
+            Ok(Source::File(path.to_owned()))
+        };
+    }
+    // Addresses have a colon, and names of scenes have none.
+    let scene = if text.contains(':') {
+        String::new()
+    } else {
+        format!("; a scene, built in or a file, is opened with `--scene {text}`")
+    };
+    let no_file = |complaint| format!("there is no such file; for a daemon, {complaint}{scene}");
+    address(text).map(Source::Daemon).map_err(no_file)
 }
 
 fn address(text: &str) -> Result<String, String> {
@@ -222,7 +245,9 @@ fn address_or_link(text: &str) -> Result<String, String> {
         return address(text);
     }
     let shared = share::read(text).map_err(|error| error.to_string())?;
-    address(&shared.address).map(|_| text.to_owned())
+    let no_link =
+        |complaint| format!("the link names no daemon: behind {}, {complaint}", share::SCHEME);
+    address(&shared.address).map(|_| text.to_owned()).map_err(no_link)
 }
 
 /// A filter whose grammar is right; whether its names are is for the daemon to say.
@@ -287,6 +312,27 @@ mod tests {
             matches!(cli.action, Some(Action::Watch(w)) if w.json && w.count == Some(3) && w.filter.as_deref() == Some("edges>3")),
             "w"
         );
+    }
+
+    #[test]
+    fn who_is_mistaken_is_told_what_to_do() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let scene = folder.path().join("room.TOML");
+        fs::write(&scene, "").expect("a scene");
+        let (scene, folder) = (scene.display().to_string(), folder.path().display().to_string());
+        for (text, part, other) in [
+            ("caustic", "`--scene caustic`", "folder"),
+            ("nowhere.toml", "`--scene nowhere.toml`", "folder"),
+            (scene.as_str(), "this is a scene", "no such file"),
+            (folder.as_str(), "this is a folder", "no such file"),
+            ("lvis://abc", "the link names no daemon", "no such file"),
+            ("render-box:99999", "no such file; for a daemon, write HOST:PORT", "--scene"),
+        ] {
+            let said = source(text).expect_err(text);
+            assert!(said.contains(part) && !said.contains(other), "`{text}`: {said}");
+        }
+        let link = source("lvis://127.0.0.1:5#camera%20frame");
+        assert!(matches!(link, Ok(Source::Daemon(_))), "{link:?}");
     }
 
     #[test]

@@ -84,7 +84,7 @@ impl Darkroom {
         self.errands.start(move || {
             let saved = imaging::save(&file, &film, shown, &metadata);
             saved
-                .map(|()| Errand::Done(format!("Saved {}", file.display())))
+                .map(|()| Errand::saved(&file))
                 .map_err(|error| format!("The image cannot be saved: {error}"))
         })
     }

@@ -89,6 +89,6 @@ fn write(image: &ColorImage, file: &std::path::Path) -> Outcome {
     let png = image::RgbaImage::from_raw(width, height, bytes)
         .ok_or_else(|| "The window has an odd size.".to_owned())?;
     png.save_with_format(file, image::ImageFormat::Png)
-        .map(|()| Errand::Done(format!("Saved {}", file.display())))
+        .map(|()| Errand::saved(file))
         .map_err(|error| format!("{} cannot be written: {error}", file.display()))
 }

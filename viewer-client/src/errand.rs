@@ -1,5 +1,6 @@
 //! Work that takes longer than a frame may: files and other programs, each on a thread of its own.
 
+use std::path::Path;
 use std::thread::JoinHandle;
 
 use crate::imaging::{FlipMap, Reference};
@@ -16,6 +17,14 @@ pub enum Errand {
     Reference(Reference),
     /// How different the image looks from it.
     Flip(Result<FlipMap, String>),
+}
+
+impl Errand {
+    /// A file is written; says where, since a name alone may lie in any folder.
+    pub fn saved(file: &Path) -> Self {
+        let place = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
+        Self::Done(format!("Saved {}", place.display()))
+    }
 }
 
 /// What went well, or why not and what to do.

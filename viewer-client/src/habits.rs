@@ -2,6 +2,7 @@
 //! the daemons it was connected to. Never tokens.
 
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 use std::{fs, io};
 
 use common::Filter;
@@ -15,6 +16,9 @@ use crate::settings::{KeptFilter, Layout, SCALES, WIDTHS};
 const MOST: usize = 8;
 /// No file of ours is larger.
 const LARGEST: u64 = 256 << 10;
+
+/// From a change to its being written: someone who drags is done by then, and a crash takes little.
+const PATIENCE: Duration = Duration::from_secs(2);
 
 /// What is remembered.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -117,10 +121,23 @@ impl Habits {
         if let Some(folder) = file.parent() {
             fs::create_dir_all(folder)?;
         }
-        // A viewer that is closed at the same time must not find half a file.
-        let fresh = file.with_extension("json.new");
-        fs::write(&fresh, format!("{:#}\n", self.to_json()))?;
-        fs::rename(fresh, file)
+        // Another viewer must neither find half a file nor write into the same one.
+        let fresh = file.with_extension(format!("json.new.{}", std::process::id()));
+        let written = fs::write(&fresh, format!("{:#}\n", self.to_json()))
+            .and_then(|()| fs::rename(&fresh, file));
+        if written.is_err() {
+            // What went wrong is told; whether anything is left to take away is no news.
+            drop(fs::remove_file(&fresh));
+        }
+        written
+    }
+
+    /// These without what a file does not keep.
+    fn lasting(mut self) -> Self {
+        if let Some(layout) = &mut self.layout {
+            (layout.help, layout.seen, layout.palette) = (false, false, false);
+        }
+        self
     }
 
     /// Remembers a connection as the newest.
@@ -128,6 +145,57 @@ impl Habits {
         self.recent.retain(|known| known != address);
         self.recent.insert(0, address.to_owned());
         self.recent.truncate(MOST);
+    }
+}
+
+/// Writes habits soon after they have changed, so that nothing has to end well for them to be kept.
+#[derive(Debug)]
+pub struct Keeper {
+    file: PathBuf,
+    /// What was last written, or tried.
+    written: Habits,
+    /// Since when there is something to write.
+    changed: Option<Instant>,
+}
+
+impl Keeper {
+    /// Of a file that holds `habits`.
+    pub fn new(file: PathBuf, habits: Habits) -> Self {
+        Self { file, written: habits.lasting(), changed: None }
+    }
+
+    /// Takes note of the habits, and writes them if they have been others for a while. The answer is when
+    /// to ask again, even if nothing happens.
+    pub fn note(&mut self, habits: Habits, now: Instant) -> Option<Duration> {
+        let habits = habits.lasting();
+        if habits == self.written {
+            self.changed = None;
+            return None;
+        }
+        let since = *self.changed.get_or_insert(now);
+        let left = PATIENCE.saturating_sub(now.saturating_duration_since(since));
+        if !left.is_zero() {
+            return Some(left);
+        }
+        self.write(habits);
+        None
+    }
+
+    /// Writes what is not written yet.
+    pub fn finish(&mut self, habits: Habits) {
+        let habits = habits.lasting();
+        if habits != self.written || !self.file.exists() {
+            self.write(habits);
+        }
+    }
+
+    fn write(&mut self, habits: Habits) {
+        self.changed = None;
+        if let Err(error) = habits.save(&self.file) {
+            tracing::warn!("{} cannot be written: {error}", self.file.display());
+        }
+        // What cannot be written is tried again with the next change, not with every frame.
+        self.written = habits;
     }
 }
 
@@ -205,6 +273,35 @@ mod tests {
         assert_eq!(habits.recent[..2], ["127.0.0.1:15", "127.0.0.1:19"], "the newest first");
         habits.save(&file).expect("a file is written");
         assert_eq!(Habits::load(&file), habits, "and read");
+    }
+
+    #[test]
+    fn a_change_is_written_soon_and_once() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let file = folder.path().join("lvis/viewer.json");
+        let habits = Habits { layout: Some(Layout::default()), ..Habits::default() };
+        let mut keeper = Keeper::new(file.clone(), habits.clone());
+        let start = Instant::now();
+        let after = |seconds: u64| start + Duration::from_secs(seconds);
+        let with = |layout: Layout| Habits { layout: Some(layout), ..habits.clone() };
+        assert_eq!(keeper.note(habits.clone(), start), None, "nothing has changed");
+        let sheet = with(Layout { help: true, palette: true, ..Layout::default() });
+        assert_eq!(keeper.note(sheet, start), None, "sheets are not kept");
+        let light = with(Layout { dark: false, ..Layout::default() });
+        assert_eq!(keeper.note(light.clone(), start), Some(PATIENCE), "not at once");
+        let larger = with(Layout { dark: false, scale: 150, ..Layout::default() });
+        let left = keeper.note(larger.clone(), after(1));
+        assert_eq!(left, Some(PATIENCE.saturating_sub(Duration::from_secs(1))), "the first counts");
+        assert!(!file.exists(), "it may still change");
+        assert_eq!(keeper.note(larger.clone(), after(2)), None, "written");
+        assert_eq!(Habits::load(&file), larger, "the newest");
+        assert_eq!(fs::read_dir(folder.path().join("lvis")).expect("a folder").count(), 1, "alone");
+        fs::remove_file(&file).expect("the file");
+        assert_eq!(keeper.note(larger, after(9)), None, "nothing new");
+        assert!(!file.exists(), "so nothing is written");
+        assert_eq!(keeper.note(light.clone(), after(10)), Some(PATIENCE), "another change");
+        keeper.finish(light.clone());
+        assert_eq!(Habits::load(&file), light, "the end does not wait");
     }
 
     #[test]

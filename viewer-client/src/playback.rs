@@ -67,6 +67,11 @@ impl Playback {
         self.playing
     }
 
+    /// What it does, in a word.
+    pub fn word(&self) -> &'static str {
+        if self.playing { "Playing" } else { "Paused" }
+    }
+
     /// Steps a second.
     pub fn rate(&self) -> f32 {
         self.rate
@@ -139,8 +144,13 @@ impl Playback {
         let step = self.step()?;
         let after = self.stage.acts.get(step.record)?;
         let before = self.stage.acts.get(step.record.checked_sub(1)?)?;
-        let Outcome::Accepted(_) = step.outcome else { return None };
         let (kept_light, kept_eye) = kept(&before.vertices, &after.vertices);
+        match step.outcome {
+            Outcome::Accepted(_) => {}
+            // Records without a word may be of other chains. All paths share a pinhole.
+            Outcome::Recorded if kept_light + kept_eye > 1 => {}
+            _ => return None,
+        }
         let inner = kept_light..after.vertices.len() - kept_eye;
         let step = FocusStep {
             number: self.position as u64,
@@ -202,7 +212,9 @@ mod tests {
         };
         let id = PathId { chain: ChainId(0), epoch: 0, step };
         let vertices = tags.iter().map(vertex).collect();
-        Act { header: PathHeader { id, ..PathHeader::default() }, vertices }
+        let header = PathHeader { id, ..PathHeader::default() };
+        let outcome = Outcome::Recorded;
+        Act { header, vertices, numbers: Vec::new(), outcome, line: 1 }
     }
 
     fn playback() -> Playback {
@@ -216,9 +228,9 @@ mod tests {
             configuration: String::new(),
             record,
         };
-        let accepted = Outcome::Accepted(Some(0.5));
+        let accepted = Outcome::Accepted(0.5);
         Playback::new(Stage {
-            frame: SceneFrame { centre: DVec3::ZERO, scale: 1.0 },
+            frame: SceneFrame { centre: DVec3::ZERO, scale: 1.0, light: 1.0 },
             camera: crate::synthetic::camera(),
             strategies: Vec::new(),
             mesh: SceneMesh::default(),
@@ -229,6 +241,7 @@ mod tests {
                 step(2, accepted, 1),
             ],
             annotated: true,
+            warnings: Vec::new(),
         })
     }
 
@@ -248,6 +261,17 @@ mod tests {
         assert_eq!(tags, [5.0, 6.0], "what is new");
         let proposal = moment.proposal().expect("a path");
         assert_eq!(proposal, playback.stage().acts[1].vertices, "together the path after");
+    }
+
+    #[test]
+    fn records_without_a_word_follow_each_other_where_they_share_vertices() {
+        let mut playback = playback();
+        playback.stage.steps[2].outcome = Outcome::Recorded;
+        playback.scene();
+        assert!(playback.moment().is_some(), "three vertices are the same");
+        playback.stage.acts[1] = act(2, &[7.0, 5.0, 6.0, 9.0]);
+        playback.scene();
+        assert_eq!(playback.moment(), None, "the lens alone is");
     }
 
     #[test]

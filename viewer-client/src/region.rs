@@ -51,13 +51,18 @@ fn without_region(filter: Filter) -> Option<Filter> {
 
 /// The rectangle that holds the pixels from one to another, both included.
 pub fn pixels(size: [usize; 2], from: [usize; 2], to: [usize; 2]) -> Region {
-    let low = |i: usize| from[i].min(to[i]) as f64 / size[i] as f64;
+    let low = |i: usize| short(from[i].min(to[i]) as f32 / size[i] as f32);
     // The paths of the next pixel begin at its edge, which a rectangle includes.
     let high = |i: usize| {
         let edge = (from[i].max(to[i]) + 1) as f32 / size[i] as f32;
-        f64::from(edge.next_down())
+        short(edge.next_down())
     };
     [low(0), low(1), high(0), high(1)]
+}
+
+/// A number with no more digits than its f32 needs, for people to read.
+fn short(number: f32) -> f64 {
+    number.to_string().parse().unwrap_or_else(|_| f64::from(number))
 }
 
 #[cfg(test)]
@@ -93,6 +98,7 @@ mod tests {
         let size = [160, 120];
         let [.., right, _] = pixels(size, [3, 5], [3, 5]);
         let [left, ..] = pixels(size, [4, 5], [4, 5]);
+        assert!(right.to_string().len() <= 12, "{right} is short");
         assert!(right < left, "{right} and {left}");
         assert_eq!(pixels(size, [9, 8], [4, 5]), pixels(size, [4, 5], [9, 8]), "either way");
     }

@@ -55,28 +55,30 @@ fn view(args: &ViewArgs) -> anyhow::Result<()> {
         let address = peer.as_ref().map(|peer| peer.address.clone()).unwrap_or_default();
         Viewer::new(Status::new(address, daemon.is_some()))
     };
-    viewer.run_script(commands);
     if let Some(file) = &args.screenshot_to {
         let wait = match (args.wait_paths, args.wait) {
             (Some(paths), _) => Wait::Paths(paths),
             (None, time) => Wait::Time(time.unwrap_or(DEFAULT_WAIT)),
         };
+        viewer.run_script(commands);
         headless::run(viewer, peer, args.size, wait, file)
     } else {
-        window::run(viewer, peer).context("the viewer ended")
+        window::run(viewer, peer, commands).context("the viewer ended")
     }
 }
 
 /// A viewer of a file of paths, with the surfaces of a scene where one is named.
 fn open(file: &Path, surfaces: Option<&str>) -> anyhow::Result<Viewer> {
     let read = dump::read(file)?;
-    for warning in &read.warnings {
+    let scene = surfaces.map(embedded::surfaces).transpose()?;
+    let stage = dump::Stage::new(read, scene);
+    // The window shows them, too, but nobody may look at it.
+    for warning in &stage.warnings {
         tracing::warn!("{}: {warning}", file.display());
     }
-    let scene = surfaces.map(embedded::surfaces).transpose()?;
     let name =
         file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let mut viewer = Viewer::new(Status::new(name.clone(), false));
-    viewer.open_dump(&name, dump::Stage::new(read, scene));
+    viewer.open_dump(&name, stage);
     Ok(viewer)
 }

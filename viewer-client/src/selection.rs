@@ -64,6 +64,11 @@ impl Names<'_> {
         self.frame.map_or(world, |frame| frame.to_scene(world))
     }
 
+    /// What a path counts, in luminance of the image.
+    pub fn luminance(&self, header: &PathHeader) -> f64 {
+        f64::from(header.luminance) * self.frame.map_or(1.0, |frame| frame.light)
+    }
+
     /// The name of the material at a vertex; a dash where there is no surface.
     pub fn material(&self, vertex: &VertexRecord) -> &str {
         if vertex.primitive == u32::MAX {
@@ -148,7 +153,7 @@ impl Selection {
             h.acceptance,
             h.dwell,
             h.weight,
-            h.luminance,
+            names.luminance(h),
             h.film[0],
             h.film[1],
         );

@@ -65,9 +65,14 @@ pub struct Status {
     pub steering: Steering,
     /// How long the daemon took to answer a question last, way and back.
     pub latency: Option<Duration>,
+    /// When something came from the daemon last.
+    pub heard: Option<Instant>,
     /// The newest word to the user.
     pub notice: Option<Notice>,
 }
+
+/// A daemon that says nothing for so long does not answer.
+pub const SILENCE: Duration = Duration::from_secs(3);
 
 impl Status {
     /// Before the first attempt to reach `address`.
@@ -86,6 +91,7 @@ impl Status {
             filter: None,
             steering: Steering::default(),
             latency: None,
+            heard: None,
             notice: None,
         }
     }
@@ -93,6 +99,13 @@ impl Status {
     /// True while data may come.
     pub fn is_connected(&self) -> bool {
         self.link == LinkState::Connected
+    }
+
+    /// How long the daemon has said nothing although the connection stands, where that is longer than
+    /// its figures, which come every second, ever take.
+    pub fn silence(&self, now: Instant) -> Option<Duration> {
+        let heard = self.heard.filter(|_| self.is_connected())?;
+        Some(now.saturating_duration_since(heard)).filter(|silence| *silence >= SILENCE)
     }
 
     /// Mutations a second as they are made now: none while the chains rest or out of reach, whatever

@@ -122,8 +122,17 @@ impl Focus {
         self.moments.get(index).filter(|moment| moment.step.number == number)
     }
 
-    /// Takes in a whole path.
+    /// Takes in a whole path. Where it is not the one that the explorer stood at, a walk begins, and the
+    /// steps of the one before are forgotten; after missed steps, it may be the same walk.
     pub fn take_path(&mut self, path: FocusPath) {
+        let goes_on = match (&self.current, self.moments.back()) {
+            (Some(current), _) => current.vertices == path.vertices,
+            (None, Some(last)) => last.step.id.epoch == path.header.id.epoch,
+            (None, None) => true,
+        };
+        if !goes_on {
+            self.moments.clear();
+        }
         self.current = Some(Arc::new(path));
     }
 
@@ -217,6 +226,32 @@ pub(crate) mod tests {
         assert_eq!(focus.moment(Some(7)), None, "never came");
         focus.miss(5);
         assert_eq!(focus.missed, 7, "what is missing is counted");
+    }
+
+    #[test]
+    fn another_path_begins_another_walk() {
+        let path = |tag, epoch, next| FocusPath {
+            header: common::PathHeader {
+                id: PathId { chain: ChainId::EXPLORER, epoch, step: 0 },
+                ..common::PathHeader::default()
+            },
+            vertices: (tag..tag + 4).map(vertex).collect(),
+            next,
+        };
+        let mut focus = Focus::default();
+        focus.take_path(path(0, 1, 1));
+        focus.take_step(step(1, FocusOutcome::Rejected, 4));
+        focus.take_path(path(0, 2, 2));
+        assert_eq!(focus.moments().len(), 1, "other strategies, the same path");
+        focus.take_path(path(50, 3, 2));
+        assert!(focus.moments().is_empty(), "another seed");
+        focus.take_step(FocusStep { number: 2, ..step(1, FocusOutcome::Rejected, 4) });
+        focus.miss(3);
+        focus.take_path(path(60, 1, 6));
+        assert_eq!(focus.moments().len(), 1, "the same walk, some steps later");
+        focus.miss(3);
+        focus.take_path(path(70, 2, 9));
+        assert!(focus.moments().is_empty(), "another walk began meanwhile");
     }
 
     #[test]

@@ -29,7 +29,7 @@ pub(crate) fn welcome() -> Welcome {
         server_version: "0.1.0".to_owned(),
         scene_name: "a room".to_owned(),
         scene_hash: "abc".to_owned(),
-        frame: SceneFrame { centre: DVec3::ZERO, scale: 1.0 },
+        frame: SceneFrame { centre: DVec3::ZERO, scale: 1.0, light: 1.0 },
         camera: camera(),
         strategies: vec!["bidirectional".to_owned(), "lens".to_owned()],
         failure_reasons: vec!["occluded".to_owned(), "off film".to_owned()],

@@ -8,10 +8,11 @@ use anyhow::{Context as _, anyhow};
 use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 
 use crate::app::Viewer;
+use crate::command::Command;
 use crate::connection::{Haste, Link, Peer, Waker};
 use crate::desk::Connect;
 use crate::gpu::Quality;
-use crate::habits::Habits;
+use crate::habits::{Habits, Keeper};
 use crate::pace::{CALM, FRAME, Pace};
 
 /// The window's first size in points.
@@ -32,8 +33,9 @@ pub(crate) fn graphics_setup() -> WgpuSetupCreateNew {
     }
 }
 
-/// Opens the window, and returns when it is closed. Without a daemon, the viewer has all it needs.
-pub fn run(viewer: Viewer, peer: Option<Peer>) -> anyhow::Result<()> {
+/// Opens the window with what is remembered, follows the commands, and returns when it is closed.
+/// Without a daemon, the viewer has all it needs.
+pub fn run(viewer: Viewer, peer: Option<Peer>, commands: Vec<Command>) -> anyhow::Result<()> {
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("Lvis")
@@ -64,9 +66,13 @@ pub fn run(viewer: Viewer, peer: Option<Peer>) -> anyhow::Result<()> {
         if let Some(peer) = peer {
             viewer.set_link(connect(peer)?);
         }
-        let habits = Habits::file().map(|file| Habits::load(&file)).unwrap_or_default();
+        let file = Habits::file();
+        let habits = file.as_deref().map(Habits::load).unwrap_or_default();
+        let keeper = file.map(|file| Keeper::new(file, habits.clone()));
         viewer.adopt(habits, connect);
-        let app: Box<dyn eframe::App> = Box::new(Window { viewer, pace: Pace::default(), is_calm });
+        viewer.run_script(commands);
+        let pace = Pace::default();
+        let app: Box<dyn eframe::App> = Box::new(Window { viewer, pace, is_calm, keeper });
         Ok(app)
     };
     eframe::run_native("Lvis", options, Box::new(create)).map_err(|error| {
@@ -90,6 +96,8 @@ struct Window {
     pace: Pace,
     /// The cloud is frozen: what comes all the time can wait. The connection's thread reads it.
     is_calm: Arc<AtomicBool>,
+    /// Keeps what the user is used to; absent where there is no folder for settings.
+    keeper: Option<Keeper>,
 }
 
 impl eframe::App for Window {
@@ -110,15 +118,19 @@ impl eframe::App for Window {
             ui.ctx().request_repaint();
         }
         self.viewer.ui(ui);
+        if let Some(keeper) = &mut self.keeper
+            && let Some(wait) = keeper.note(self.viewer.habits(), Instant::now())
+        {
+            ui.ctx().request_repaint_after(wait);
+        }
         if self.viewer.is_closing() {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
         }
     }
 
     fn on_exit(&mut self) {
-        let Some(file) = Habits::file() else { return };
-        if let Err(error) = self.viewer.habits().save(&file) {
-            tracing::warn!("{} cannot be written: {error}", file.display());
+        if let Some(keeper) = &mut self.keeper {
+            keeper.finish(self.viewer.habits());
         }
     }
 }

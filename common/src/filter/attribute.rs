@@ -1,6 +1,6 @@
 //! Numbers that a path can be asked for.
 
-use crate::{Event, PathHeader, VertexKind, VertexRecord};
+use crate::{Event, PathHeader, SceneFrame, VertexKind, VertexRecord};
 use glam::Vec3;
 
 /// A number that belongs to a path.
@@ -10,7 +10,7 @@ pub enum Attribute {
     Edges,
     /// Length of the polyline, in the file's units.
     Length,
-    /// The path's value to a bidirectional path tracer: `1 / S(x)`, in film luminance.
+    /// The path's value to a bidirectional path tracer: `1 / S(x)`, in luminance of the image.
     Luminance,
     /// Acceptance probability of the mutation that made the path.
     Acceptance,
@@ -95,14 +95,23 @@ impl Attribute {
         !matches!(self, Self::Length | Self::Luminance | Self::Acceptance)
     }
 
-    /// Its value for a path whose coordinates are `scale` times the file's units.
+    /// By how much a number that travels is larger than in the units of the file.
+    pub(super) fn scale(self, frame: SceneFrame) -> f64 {
+        match self {
+            Self::Length => frame.scale,
+            Self::Luminance => frame.light.recip(),
+            _ => 1.0,
+        }
+    }
+
+    /// Its value for a path whose numbers are `scale` times those in the file's units.
     #[inline]
     pub(super) fn value(self, header: &PathHeader, path: &[VertexRecord], scale: f64) -> f64 {
         let count = |is: fn(&VertexRecord) -> bool| path.iter().filter(|v| is(v)).count() as f64;
         match self {
             Self::Edges => path.len().saturating_sub(1) as f64,
             Self::Length => length(path) / scale,
-            Self::Luminance => f64::from(header.luminance),
+            Self::Luminance => f64::from(header.luminance) / scale,
             Self::Acceptance => f64::from(header.acceptance),
             Self::Dwell => f64::from(header.dwell),
             Self::Chain => f64::from(header.id.chain.0),

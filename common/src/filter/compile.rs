@@ -112,7 +112,7 @@ impl Compiler<'_> {
     }
 
     fn leaf(&self, leaf: &Leaf, depth: usize) -> Result<CompiledLeaf, FilterError> {
-        let scale = self.scene.frame.scale;
+        let frame = self.scene.frame;
         Ok(match leaf {
             Leaf::Vertex { place, test } => {
                 let test = self.vertex_test(test, depth, &mut 0)?;
@@ -129,12 +129,12 @@ impl Compiler<'_> {
                 max: max.map(|coordinate| coordinate as f32),
             },
             &Leaf::Number { attribute, comparison, value } => {
-                let value = attribute.rounded(value);
+                let (scale, value) = (attribute.scale(frame), attribute.rounded(value));
                 CompiledLeaf::Number { attribute, scale, comparison, value }
             }
             &Leaf::Range { attribute, least, most } => CompiledLeaf::Range {
                 attribute,
-                scale,
+                scale: attribute.scale(frame),
                 least: attribute.rounded(least),
                 most: attribute.rounded(most),
             },

@@ -43,7 +43,7 @@ pub(super) fn color(field: &'static str, wire: Option<v1::Color>) -> Result<Rgb,
 
 impl From<SceneFrame> for v1::SceneFrame {
     fn from(frame: SceneFrame) -> Self {
-        Self { centre: Some(frame.centre.into()), scale: frame.scale }
+        Self { centre: Some(frame.centre.into()), scale: frame.scale, light: frame.light }
     }
 }
 
@@ -54,6 +54,11 @@ impl TryFrom<v1::SceneFrame> for SceneFrame {
         Ok(Self {
             centre: vector("frame.centre", wire.centre)?,
             scale: check::positive("frame.scale", wire.scale)?,
+            // Daemons before 1.4 do not tell.
+            light: match wire.light {
+                0.0 => 1.0,
+                told => check::positive("frame.light", told)?,
+            },
         })
     }
 }

@@ -27,7 +27,7 @@ fn camera() -> Camera {
 }
 
 fn frame() -> SceneFrame {
-    SceneFrame { centre: DVec3::new(0.5, -1.0, 4.0), scale: 64.0 }
+    SceneFrame { centre: DVec3::new(0.5, -1.0, 4.0), scale: 64.0, light: 0.5 }
 }
 
 fn welcome() -> Welcome {

@@ -167,7 +167,7 @@ fn statistics() -> Statistics {
 pub(super) fn filter_scene() -> FilterScene {
     let names = |all: &[&str]| all.iter().map(|&name| name.to_owned()).collect();
     FilterScene {
-        frame: SceneFrame { centre: DVec3::new(0.5, 0.0, 1.0), scale: 0.25 },
+        frame: SceneFrame { centre: DVec3::new(0.5, 0.0, 1.0), scale: 0.25, light: 1.0 },
         materials: names(&["glass", "floor", "lamp"]),
         background: None,
         strategies: names(&["bidirectional", "lens", "caustic"]),

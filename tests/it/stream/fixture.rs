@@ -40,7 +40,7 @@ pub(crate) fn session_info() -> SessionInfo {
         server_version: "test".to_owned(),
         scene_name: "strip".to_owned(),
         scene_hash: "cafe".to_owned(),
-        frame: SceneFrame { centre: DVec3::ZERO, scale: 2.0 },
+        frame: SceneFrame { centre: DVec3::ZERO, scale: 2.0, light: 1.0 },
         camera,
         strategies: vec!["lens".to_owned()],
         failure_reasons: vec!["occluded".to_owned()],

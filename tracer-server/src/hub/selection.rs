@@ -73,7 +73,7 @@ impl Walk {
 
 fn compiled(text: &str) -> Arc<CompiledFilter> {
     let scene = FilterScene {
-        frame: SceneFrame { centre: glam::DVec3::ZERO, scale: 1.0 },
+        frame: SceneFrame { centre: glam::DVec3::ZERO, scale: 1.0, light: 1.0 },
         materials: vec!["even".to_owned(), "odd".to_owned()],
         background: None,
         strategies: Vec::new(),

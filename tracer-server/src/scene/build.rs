@@ -114,10 +114,9 @@ impl Scene {
         Ok(Self {
             name: description.name.clone(),
             hash: hash::digest(description),
-            frame,
+            frame: SceneFrame { light: radiance_scale, ..frame },
             camera,
             max_edges: description.max_edges,
-            radiance_scale,
             features,
             accel,
             primitives,
@@ -172,7 +171,11 @@ fn normalising_frame(description: &SceneDescription) -> Result<SceneFrame, Scene
     if !(extent > 0.0) || !extent.is_finite() {
         return Err(SceneError::Empty);
     }
-    Ok(SceneFrame { centre: 0.5 * (low + high), scale: 2_f64.powi(10 - exponent(extent)) })
+    Ok(SceneFrame {
+        centre: 0.5 * (low + high),
+        scale: 2_f64.powi(10 - exponent(extent)),
+        light: 1.0,
+    })
 }
 
 /// The exponent of the power of two just below a positive number. Read from the bits, since a

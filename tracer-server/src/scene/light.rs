@@ -62,8 +62,8 @@ impl Scene {
             LampInfo {
                 name,
                 kind: lamp.kind(),
-                color: lamp.color() * (self.radiance_scale / per_area),
-                power: PI * lamp.power(bounds) * self.radiance_scale / area,
+                color: lamp.color() * (self.radiance_scale() / per_area),
+                power: PI * lamp.power(bounds) * self.radiance_scale() / area,
             }
         })
     }

@@ -85,7 +85,6 @@ pub struct Scene {
     frame: SceneFrame,
     camera: Camera,
     max_edges: usize,
-    radiance_scale: f64,
     features: SceneFeatures,
     accel: Accel,
     primitives: Vec<Primitive>,
@@ -159,7 +158,7 @@ impl Scene {
 
     /// Multiply a film value by this to get radiance in the units of the file: a power of two.
     pub fn radiance_scale(&self) -> f64 {
-        self.radiance_scale
+        self.frame.light
     }
 
     /// What the scene contains.

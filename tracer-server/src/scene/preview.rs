@@ -92,7 +92,7 @@ impl Scene {
     }
 
     fn material_info(&self, surface: &SurfaceMaterial, pictures: &mut Pictures) -> MaterialInfo {
-        let emission: Rgb = surface.emission * self.radiance_scale;
+        let emission: Rgb = surface.emission * self.radiance_scale();
         MaterialInfo {
             name: surface.name.clone(),
             model: surface.bsdf.name().to_owned(),

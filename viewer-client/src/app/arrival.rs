@@ -1,9 +1,9 @@
 //! What comes from the daemon, taken in between frames.
 
 use std::collections::VecDeque;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use common::{Appearance, FilterReply, Notice, Welcome};
+use common::{Appearance, FilterReply, FocusPath, Notice, Welcome};
 
 use super::{Stale, Viewer};
 use crate::connection::{Delivery, FocusNews, Link};
@@ -21,6 +21,9 @@ impl Viewer {
         let before = self.store.counts();
         let delivery = self.link.as_ref().map(Link::take).unwrap_or_default();
         let mut news = !delivery.is_empty();
+        if news {
+            self.status.heard = Some(Instant::now());
+        }
         self.take(delivery);
         news |= self.darkroom.collect(&mut self.settings.image, &mut self.status);
         let time = self.started.elapsed().as_secs_f64();
@@ -69,7 +72,7 @@ impl Viewer {
         }
         for news in delivery.focus {
             match news {
-                FocusNews::Path(path) => self.status.steering.focus.take_path(path),
+                FocusNews::Path(path) => self.take_focus(path),
                 FocusNews::Step(step) => self.status.steering.focus.take_step(step),
                 FocusNews::Gap(steps) => self.status.steering.focus.miss(steps),
             }
@@ -101,6 +104,15 @@ impl Viewer {
         self.status.latency = delivery.latency.or(self.status.latency);
         if let Some(state) = delivery.state {
             self.status.link = state;
+        }
+    }
+
+    /// The explorer stands at a path: with another walk, the timeline is back at its end.
+    fn take_focus(&mut self, path: FocusPath) {
+        let focus = &mut self.status.steering.focus;
+        focus.take_path(path);
+        if focus.moments().is_empty() {
+            self.scrub = None;
         }
     }
 

@@ -37,7 +37,7 @@ impl Viewer {
         let welcome = self.status.welcome.as_ref();
         let mesh = self.model.as_ref().map(|model| &model.mesh);
         let materials = mesh.map(|mesh| mesh.materials.as_slice()).unwrap_or_default();
-        let unknown = SceneFrame { centre: glam::DVec3::ZERO, scale: 1.0 };
+        let unknown = SceneFrame { centre: glam::DVec3::ZERO, scale: 1.0, light: 1.0 };
         let scene = FilterScene {
             frame: welcome.map_or(unknown, |welcome| welcome.frame),
             materials: materials.iter().map(|material| material.name.clone()).collect(),

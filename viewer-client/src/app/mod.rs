@@ -338,6 +338,9 @@ impl Viewer {
     }
 
     fn send(&mut self, order: common::Order) {
+        if self.refuse_to_steer() {
+            return;
+        }
         self.orders += 1;
         let sent = self.link.as_ref().is_some_and(|link| link.order(self.orders, order));
         if !sent {

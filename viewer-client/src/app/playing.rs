@@ -37,11 +37,32 @@ impl Viewer {
             welcome: Some(welcome),
             ..Delivery::default()
         });
-        self.set_model(Model::new(stage.mesh.clone()));
+        let model = Model::new(stage.mesh.clone());
+        self.set_model(
+            model.map(|model| Model { bounds: stage.bounds().unwrap_or(model.bounds), ..model }),
+        );
         // A file tells no radiance.
         self.apply(Command::Cloud(CloudCommand::Color(ColorMode::Class)));
+        if let Some(warning) = stage.warnings.first() {
+            let more = match stage.warnings.len() - 1 {
+                0 => String::new(),
+                more => format!(" ({more} more in the Playback panel)"),
+            };
+            self.status.say(Err(format!("in {name}, {warning}{more}")));
+        }
         self.playback = Some(Playback::new(stage));
         self.show_playback();
+    }
+
+    /// Says why nothing can be steered in a file of paths; false where a daemon is.
+    pub(super) fn refuse_to_steer(&mut self) -> bool {
+        if self.playback.is_none() {
+            return false;
+        }
+        let problem = "A file of paths has no daemon whose chains could be steered or explored; open \
+                       the scene itself with `viewer-client --scene SCENE`.";
+        self.status.say(Err(problem.to_owned()));
+        true
     }
 
     /// Follows a command about the file of paths.
@@ -89,6 +110,30 @@ mod tests {
     use crate::dump::tests::{STEPS, stage};
     use crate::playback::Playback;
     use crate::status::Status;
+
+    #[test]
+    fn what_was_left_out_and_cannot_be_done_is_said() {
+        let mut viewer = Viewer::new(Status::new("paths.txt".to_owned(), false));
+        assert!(!viewer.refuse_to_steer(), "a daemon may be asked");
+        let warnings = ["the last record has no end", "two more"].map(str::to_owned).into();
+        viewer.open_dump("paths.txt", crate::dump::Stage { warnings, ..stage() });
+        let said = |viewer: &Viewer| viewer.status.notice.clone().map(|notice| notice.text);
+        let expected = "In paths.txt, the last record has no end (1 more in the Playback panel)";
+        assert_eq!(said(&viewer).as_deref(), Some(expected), "in the window");
+        assert!(viewer.refuse_to_steer(), "there is nobody to steer");
+        assert!(said(&viewer).is_some_and(|text| text.contains("--scene")), "what to do");
+    }
+
+    #[test]
+    fn all_of_a_file_is_in_the_picture() {
+        let mut viewer = Viewer::new(Status::new("paths.txt".to_owned(), false));
+        let stage = stage();
+        let lens = glam::Vec3::from(stage.acts[0].vertices[2].position);
+        viewer.open_dump("paths.txt", stage);
+        let bounds = viewer.bounds().expect("a scene");
+        let is_within = lens.cmpge(bounds.min).all() && lens.cmple(bounds.max).all();
+        assert!(is_within, "the lens at {lens} lies outside of {bounds:?}");
+    }
 
     #[test]
     fn a_file_is_shown_played_and_picked() {

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use common::{DetailReply, PathBatch};
+use common::{DetailReply, PathBatch, PathDetail};
 
 use super::Viewer;
 use crate::command::{CameraCommand, PathCommand, VertexStep};
 use crate::pick::Aim;
 use crate::selection::{Detail, Selection, Sight};
+use crate::units;
 
 impl Viewer {
     /// Follows a command about the path that is looked at.
@@ -97,8 +98,9 @@ impl Viewer {
         };
     }
 
-    /// Keeps the numbers behind the selected path.
+    /// Keeps the numbers behind the selected path, in the units of the scene file.
     pub(super) fn learn(&mut self, DetailReply { path, found }: DetailReply) {
+        let found = found.and_then(|detail| self.in_file_units(detail));
         let Some(selection) = self.selection.as_mut().filter(|s| s.header.id == path) else {
             return;
         };
@@ -110,11 +112,22 @@ impl Viewer {
             Err(why) => Detail::Missing(why),
         };
     }
+
+    fn in_file_units(&self, detail: PathDetail) -> Result<PathDetail, String> {
+        let light = self.selection.as_ref().and_then(|selection| selection.vertices.first());
+        match light {
+            Some(_) if self.model.is_none() => {
+                Err("The scene has not come yet; select the path again once it has.".to_owned())
+            }
+            Some(light) => Ok(units::in_file_units(detail, light, &self.world().names())),
+            None => Ok(detail),
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use common::{Notice, PathDetail, PathId, VertexDetail};
+    use common::{Notice, PathId, VertexDetail};
 
     use super::*;
     use crate::connection::Delivery;
@@ -154,5 +167,11 @@ mod tests {
         assert!(matches!(odd, Some(Detail::Missing(_))), "of other vertices");
         let gone = told(PathId::default(), Err("it is gone".to_owned()));
         assert_eq!(gone, Some(Detail::Missing("it is gone".to_owned())), "why");
+        let welcome = viewer.status.welcome.as_mut().expect("a daemon");
+        welcome.frame.scale = 4.0;
+        viewer.learn(DetailReply { path: PathId::default(), found: Ok(numbers(3)) });
+        let numbers = viewer.selection.as_ref().and_then(Selection::numbers);
+        let geometry = numbers.map(|numbers| numbers.geometry.as_slice());
+        assert_eq!(geometry, Some([16.0; 2].as_slice()), "per square unit of the scene file");
     }
 }

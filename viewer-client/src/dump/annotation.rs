@@ -33,7 +33,7 @@ pub(super) fn parse(text: &str) -> Result<Option<Annotation>, String> {
     let a = |a: Option<f64>| a.ok_or("`a=A`, the acceptance probability, is missing");
     let outcome = match found.fate {
         _ if is_seed => Outcome::Seed,
-        Some("accepted") => Outcome::Accepted(Some(a(found.acceptance)?)),
+        Some("accepted") => Outcome::Accepted(a(found.acceptance)?),
         Some("rejected") => Outcome::Rejected(a(found.acceptance)?),
         Some("failed") => Outcome::Failed,
         _ => return Err("a step is `accepted`, `rejected` or `failed`".to_owned()),

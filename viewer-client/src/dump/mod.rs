@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 use thiserror::Error;
 
-use common::{Event, VertexKind};
+use common::{Event, Rgb, VertexKind};
 
 pub use stage::{Act, Stage};
 
@@ -48,7 +48,7 @@ pub enum DumpError {
     /// There is no path in it.
     #[error(
         "{0} holds no path: a record begins with a line `Path[` and ends with a line `]`, as \
-         Mitsuba 0.6 prints paths"
+         Mitsuba 0.6 prints paths; a scene is opened with `--scene`"
     )]
     Empty(PathBuf),
 }
@@ -73,6 +73,29 @@ pub struct DumpVertex {
     pub event: Event,
     /// The shape that it lies on, or what stands there.
     pub shape: String,
+    /// How it was made.
+    pub numbers: Numbers,
+}
+
+/// What the file tells of making a vertex from its two sides.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Numbers {
+    /// By a step from the light side.
+    pub from_light: Option<Walked>,
+    /// By a step from the eye side.
+    pub from_eye: Option<Walked>,
+}
+
+/// The step that makes a vertex, as Mitsuba has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Walked {
+    /// Its density, per area at the vertex that it makes in the units of the file; a probability
+    /// where it is discrete.
+    pub pdf: f64,
+    /// Value over density.
+    pub weight: Rgb,
+    /// A mirror, glass or the lens leaves no choice of direction.
+    pub is_discrete: bool,
 }
 
 /// One path, from the light to the lens.
@@ -91,12 +114,14 @@ pub struct Record {
 pub enum Outcome {
     /// The chain begins with this path.
     Seed,
-    /// The proposal is the current path now. Its acceptance probability, where the file tells it.
-    Accepted(Option<f64>),
+    /// The proposal is the current path now. Its acceptance probability.
+    Accepted(f64),
     /// The proposal lost against this acceptance probability.
     Rejected(f64),
     /// The strategy made no proposal.
     Failed,
+    /// The file has the path, and does not tell how it came about: neither chain, step nor mutation.
+    Recorded,
 }
 
 impl Outcome {
@@ -107,12 +132,13 @@ impl Outcome {
             Self::Accepted(_) => "accepted",
             Self::Rejected(_) => "rejected",
             Self::Failed => "failed",
+            Self::Recorded => "recorded",
         }
     }
 
     /// True where the step has a record.
     pub fn has_path(self) -> bool {
-        matches!(self, Self::Seed | Self::Accepted(_))
+        matches!(self, Self::Seed | Self::Accepted(_) | Self::Recorded)
     }
 }
 
@@ -121,9 +147,9 @@ impl Outcome {
 pub struct Step {
     /// The line that tells of it.
     pub line: usize,
-    /// The chain.
+    /// The chain; 0 where nobody tells it, see [`Outcome::Recorded`].
     pub chain: u32,
-    /// Its number in the chain; the seed is 0.
+    /// Its number in the chain; the seed is 0. Without a chain, its number in the file.
     pub number: u64,
     /// What became of it.
     pub outcome: Outcome,

@@ -4,8 +4,8 @@ use common::MAX_VERTICES;
 use glam::DVec3;
 
 use super::annotation::{self, Annotation};
-use super::record::OpenVertex;
-use super::{Dump, Fault, Outcome, Record, Step};
+use super::record::{OpenVertex, Way};
+use super::{Dump, Fault, Numbers, Outcome, Record, Step};
 
 /// Formal vertices, one at each end.
 const FORMAL: usize = 2;
@@ -113,12 +113,10 @@ impl Parser {
             open.close().map_err(|problem| format!("the record of line {line}: {problem}"))?;
         let index = self.dump.records.len();
         let (note, line) = self.due.take().unwrap_or_else(|| {
-            let first = index == 0;
-            let outcome = if first { Outcome::Seed } else { Outcome::Accepted(None) };
             let note = Annotation {
                 chain: None,
-                number: self.dump.steps.last().map_or(0, |step| step.number + 1),
-                outcome,
+                number: self.dump.steps.last().map_or(0, |step| step.number.saturating_add(1)),
+                outcome: Outcome::Recorded,
                 mutation: String::new(),
                 pixel: Some(record.pixel),
                 configuration: String::new(),
@@ -152,13 +150,23 @@ impl Parser {
 impl OpenRecord {
     fn close(self) -> Result<Record, String> {
         let pixel = self.vertices.iter().rev().find_map(|(vertex, _)| vertex.pixel);
-        let real: Vec<_> = self.vertices.into_iter().filter(|(v, _)| !v.is_formal()).collect();
-        let places: Vec<Option<DVec3>> = real.iter().map(|(vertex, _)| vertex.position()).collect();
+        // A vertex is made by the step that leaves the one before it, which may be a formal one.
+        let step = |i: Option<usize>, way| self.vertices.get(i?)?.0.step(way);
+        let numbers: Vec<Numbers> = (0..self.vertices.len())
+            .map(|i| Numbers {
+                from_light: step(i.checked_sub(1), Way::Onward),
+                from_eye: step(i.checked_add(1), Way::Back),
+            })
+            .collect();
+        let all = self.vertices.into_iter().zip(numbers);
+        let real: Vec<_> = all.filter(|((vertex, _), _)| !vertex.is_formal()).collect();
+        let places: Vec<Option<DVec3>> =
+            real.iter().map(|((vertex, _), _)| vertex.position()).collect();
         let place = |i: usize| places.get(i).copied().flatten();
         let mut vertices = Vec::with_capacity(real.len());
-        for (i, (vertex, line)) in real.into_iter().enumerate() {
+        for (i, ((vertex, line), numbers)) in real.into_iter().enumerate() {
             let before = i.checked_sub(1).and_then(place);
-            let vertex = vertex.close(before, place(i + 1));
+            let vertex = vertex.close(before, place(i + 1), numbers);
             vertices
                 .push(vertex.map_err(|problem| format!("the vertex of line {line}: {problem}"))?);
         }

@@ -1,9 +1,9 @@
 //! One vertex of a record, key by key.
 
-use common::{Event, VertexKind};
+use common::{Event, Rgb, VertexKind};
 use glam::DVec3;
 
-use super::{DumpVertex, Sensor};
+use super::{DumpVertex, Numbers, Sensor, Walked};
 
 /// Bits of `componentType`.
 const DIFFUSE: u32 = 2;
@@ -22,6 +22,22 @@ enum Part {
     Shape,
 }
 
+/// Which way a step goes; Mitsuba calls the ways by what is carried along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    /// From the light towards the lens: `importance`.
+    Onward,
+    /// From the lens towards the light: `radiance`.
+    Back,
+}
+
+/// What stands in the brackets of `weight[...]` and `pdf[...]`.
+#[derive(Clone, Copy, Debug, Default)]
+struct OpenStep {
+    pdf: Option<f64>,
+    weight: Option<Rgb>,
+}
+
 /// A vertex of which not every key was read yet.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OpenVertex {
@@ -33,6 +49,8 @@ pub(super) struct OpenVertex {
     normal: DVec3,
     shape: String,
     part: Part,
+    onward: OpenStep,
+    back: OpenStep,
     pub(super) pixel: Option<[f64; 2]>,
 }
 
@@ -71,6 +89,10 @@ impl OpenVertex {
                 self.components =
                     value.parse().ok().ok_or_else(|| format!("`{key} = {value}` is no number"))?;
             }
+            (4, "pdf[importance]") => self.onward.pdf = density(key, value)?,
+            (4, "pdf[radiance]") => self.back.pdf = density(key, value)?,
+            (4, "weight[importance]") => self.onward.weight = weight(key, value)?,
+            (4, "weight[radiance]") => self.back.weight = weight(key, value)?,
             (6, "p") => self.position = Some(vector(key, value)?),
             (6, "n") => self.normal = vector(key, value)?,
             (6, "uv") => self.pixel = Some(numbers(key, value)?),
@@ -91,6 +113,7 @@ impl OpenVertex {
         self,
         before: Option<DVec3>,
         after: Option<DVec3>,
+        numbers: Numbers,
     ) -> Result<DumpVertex, String> {
         let position = self.position.ok_or_else(|| {
             format!("a vertex of the type `{}` has no position `p = [x, y, z]`", self.kind)
@@ -107,7 +130,7 @@ impl OpenVertex {
             other => return Err(format!("`{other}` is no type of vertex that is known")),
         };
         let shape = if self.shape.is_empty() { shape.to_owned() } else { self.shape };
-        Ok(DumpVertex { position, normal: self.normal, kind, event, shape })
+        Ok(DumpVertex { position, normal: self.normal, kind, event, shape, numbers })
     }
 
     fn event(&self, position: DVec3, before: Option<DVec3>, after: Option<DVec3>) -> Event {
@@ -135,6 +158,32 @@ impl OpenVertex {
     pub(super) fn position(&self) -> Option<DVec3> {
         self.position
     }
+
+    /// The step that leaves this vertex, where the file tells all of it.
+    pub(super) fn step(&self, way: Way) -> Option<Walked> {
+        let OpenStep { pdf, weight } = match way {
+            Way::Onward => self.onward,
+            Way::Back => self.back,
+        };
+        Some(Walked { pdf: pdf?, weight: weight?, is_discrete: self.discrete })
+    }
+}
+
+/// A density; `None` for what Mitsuba prints where one overflows.
+fn density(key: &str, value: &str) -> Result<Option<f64>, String> {
+    let number: Result<f64, _> = value.parse();
+    let number = number.ok().ok_or_else(|| format!("`{key} = {value}` should be a number"))?;
+    Ok((number.is_finite() && number >= 0.0).then_some(number))
+}
+
+/// A weight; `None` for what Mitsuba prints where one overflows.
+fn weight(key: &str, value: &str) -> Result<Option<Rgb>, String> {
+    let problem = || format!("`{key} = {value}` should be 3 numbers in brackets");
+    let inner = value.strip_prefix('[').and_then(|v| v.strip_suffix(']')).ok_or_else(problem)?;
+    let parsed: Option<Vec<f64>> = inner.split(',').map(|n| n.trim().parse().ok()).collect();
+    let rgb: Option<[f64; 3]> = parsed.and_then(|numbers| numbers.try_into().ok());
+    let rgb = rgb.ok_or_else(problem)?;
+    Ok(rgb.iter().all(|c| c.is_finite() && *c >= 0.0).then_some(Rgb::from(rgb)))
 }
 
 fn vector(key: &str, value: &str) -> Result<DVec3, String> {

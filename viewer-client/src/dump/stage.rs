@@ -6,7 +6,8 @@ use common::{
 };
 use glam::{DVec3, Vec3};
 
-use super::{Dump, DumpVertex, Outcome, Record, Step};
+use super::{Dump, DumpVertex, Numbers, Outcome, Record, Step};
+use crate::camera::Bounds;
 
 /// Field of view of a camera that tells none, in degrees.
 const USUAL_FOV: f64 = 40.0;
@@ -18,6 +19,13 @@ pub struct Act {
     pub header: PathHeader,
     /// From the light to the lens.
     pub vertices: Vec<VertexRecord>,
+    /// How each of them was made, as far as the file tells.
+    pub numbers: Vec<Numbers>,
+    /// How the path came about. Where nobody tells, name, strategy, acceptance probability and stay
+    /// in the header say nothing.
+    pub outcome: Outcome,
+    /// The line where its record begins.
+    pub line: usize,
 }
 
 /// A dump that can be played.
@@ -37,16 +45,27 @@ pub struct Stage {
     pub steps: Vec<Step>,
     /// The file tells what became of every step.
     pub annotated: bool,
+    /// What was left out, or does not fit, for people.
+    pub warnings: Vec<String>,
 }
 
 /// Further away than this nothing is drawn.
 const FAR: DVec3 = DVec3::splat(1e30);
+/// Nothing further away is part of the picture as a whole, in scene units.
+const REACH: f32 = 1e9;
+/// Nor is a lens that is further from what it looks at, in radii of that.
+const NEAR_LENS: f32 = 8.0;
+/// So much of the surfaces' radius may a path reach beyond them.
+const MARGIN: f32 = 0.02;
 
 impl Stage {
     /// Makes a dump ready, in the frame of a scene where one is shown with it.
-    pub fn new(dump: Dump, scene: Option<(SceneFrame, SceneMesh)>) -> Self {
+    pub fn new(mut dump: Dump, scene: Option<(SceneFrame, SceneMesh)>) -> Self {
         let (frame, mesh) =
             scene.map_or_else(|| (frame_of(&dump.records), None), |(f, m)| (f, Some(m)));
+        let mut warnings = std::mem::take(&mut dump.warnings);
+        let surfaces = mesh.as_ref().and_then(|mesh| Bounds::of(&mesh.positions));
+        warnings.extend(surfaces.and_then(|bounds| misfit(bounds, &dump.records, frame)));
         let camera = mesh.as_ref().and_then(|m| m.camera).unwrap_or_else(|| camera(&dump, frame));
         let mut mesh = mesh.unwrap_or_else(|| touched(&dump.records, frame));
         mesh.camera = Some(camera);
@@ -64,6 +83,7 @@ impl Stage {
             acts: Vec::with_capacity(dump.records.len()),
             steps: dump.steps,
             annotated: dump.annotated,
+            warnings,
         };
         for record in &dump.records {
             let act = stage.act(record);
@@ -73,6 +93,20 @@ impl Stage {
         stage
     }
 
+    /// The box round surfaces and paths, lenses included unless they are far away.
+    pub fn bounds(&self) -> Option<Bounds> {
+        let inner = self.acts.iter().flat_map(|act| act.vertices.iter().rev().skip(1));
+        let places = self.mesh.positions.iter().copied().chain(inner.map(|v| v.position));
+        let near = |place: &[f32; 3]| place.iter().all(|x| x.abs() <= REACH);
+        let body = Bounds::of(&places.filter(near).collect::<Vec<_>>())?;
+        let farthest = NEAR_LENS * body.radius();
+        let lenses = self.acts.iter().filter_map(|act| act.vertices.last());
+        let lenses = lenses
+            .map(|lens| Vec3::from(lens.position))
+            .filter(|lens| (*lens - body.centre()).length() <= farthest);
+        Some(lenses.fold(body, |b, lens| Bounds { min: b.min.min(lens), max: b.max.max(lens) }))
+    }
+
     fn act(&mut self, record: &Record) -> Act {
         let [x, y] = record.pixel;
         let film =
@@ -80,7 +114,8 @@ impl Stage {
         // The file tells what was sampled, not what the path is worth.
         let header = PathHeader { film, luminance: 1.0, rgb: [1.0; 3], ..PathHeader::default() };
         let vertices = record.vertices.iter().map(|vertex| self.vertex(vertex)).collect();
-        Act { header, vertices }
+        let numbers = record.vertices.iter().map(|vertex| vertex.numbers).collect();
+        Act { header, vertices, numbers, outcome: Outcome::Recorded, line: record.line }
     }
 
     fn vertex(&mut self, vertex: &DumpVertex) -> VertexRecord {
@@ -122,11 +157,12 @@ impl Stage {
                 header.weight += 1.0;
                 continue;
             }
+            act.outcome = step.outcome;
             header.id = PathId { chain: ChainId(step.chain), epoch: 0, step: step.number };
             header.strategy = strategy(&self.strategies, &step.mutation);
             header.weight += 1.0;
             header.acceptance = match step.outcome {
-                Outcome::Accepted(Some(a)) => a as f32,
+                Outcome::Accepted(a) => a as f32,
                 _ => 1.0,
             };
         }
@@ -144,6 +180,21 @@ fn inner(records: &[Record]) -> impl Iterator<Item = &DumpVertex> {
     records.iter().flat_map(move |record| record.vertices.iter().take(of_record(record)))
 }
 
+/// A warning where most of what paths touch lies outside of the surfaces.
+fn misfit(surfaces: Bounds, records: &[Record], frame: SceneFrame) -> Option<String> {
+    let margin = Vec3::splat(MARGIN * surfaces.radius());
+    let (low, high) = (surfaces.min - margin, surfaces.max + margin);
+    let places = || inner(records).map(|v| frame.to_scene(v.position).clamp(-FAR, FAR).as_vec3());
+    let is_within = |place: &Vec3| place.cmpge(low).all() && place.cmple(high).all();
+    let (all, within) = (places().count(), places().filter(is_within).count());
+    (2 * within < all).then(|| {
+        format!(
+            "only {within} of {all} vertices lie within the surfaces: those are of another scene, \
+             or in other units"
+        )
+    })
+}
+
 /// A frame of the same kind as the daemon's: the largest extent lies in [1024, 2048).
 fn frame_of(records: &[Record]) -> SceneFrame {
     let places = || inner(records).map(|vertex| vertex.position);
@@ -151,7 +202,7 @@ fn frame_of(records: &[Record]) -> SceneFrame {
     let high = places().reduce(DVec3::max).unwrap_or(DVec3::ONE);
     let extent = (high - low).max_element().max(1e-6);
     let scale = 2_f64.powi(10 - extent.log2().floor() as i32);
-    SceneFrame { centre: 0.5 * (low + high), scale }
+    SceneFrame { centre: 0.5 * (low + high), scale, light: 1.0 }
 }
 
 fn touched(records: &[Record], frame: SceneFrame) -> SceneMesh {

@@ -1,8 +1,11 @@
 //! Files of every kind.
 
+use std::fmt::Write as _;
+
 use std::path::PathBuf;
 
-use common::{Event, VertexKind};
+use common::{Event, Rgb, SceneFrame, SceneMesh, VertexKind};
+use glam::DVec3;
 
 use super::parse::Parser;
 use super::*;
@@ -137,7 +140,7 @@ pub(crate) fn stage() -> Stage {
 fn steps_are_told_with_what_was_rejected() {
     let dump = annotated();
     let told: Vec<_> = dump.steps.iter().map(|s| (s.number, s.outcome, s.record)).collect();
-    let accepted = Outcome::Accepted(Some(0.5));
+    let accepted = Outcome::Accepted(0.5);
     let expected = [
         (0, Outcome::Seed, 0),
         (1, Outcome::Failed, 0),
@@ -152,6 +155,79 @@ fn steps_are_told_with_what_was_rejected() {
     assert_eq!((next.id.to_string(), next.acceptance), ("4.0.3".to_owned(), 0.5), "its name");
     assert_eq!(stage.strategies, ["lens", "bidirectional"], "the mutations");
     assert_eq!(seed.film, [12.5 / 64.0, 30.25 / 48.0], "on the film");
+}
+
+/// The record with densities and weights: the number of the vertex in the tens, the way in the ones.
+fn with_numbers() -> String {
+    let mut parts = RECORD.split("  ],\n  Edge");
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for (i, part) in parts.enumerate() {
+        write!(
+            text,
+            "    weight[importance] = [{i}1, 2, 3],\n    weight[radiance] = [{i}2, 2, 3],\n    \
+             pdf[importance] = {i}1e-2,\n    pdf[radiance] = {i}2e-2\n  ],\n  Edge{part}"
+        )
+        .expect("a string takes all");
+    }
+    let end = "    type = sensorSupernode,\n";
+    let last = "    weight[radiance] = [1, 1, 1],\n    pdf[radiance] = inf,\n";
+    text.replace(end, &format!("{end}{last}"))
+}
+
+/// A dump of one path that has densities and weights, and no word on how it came about.
+pub(crate) fn stage_with_numbers() -> Stage {
+    Stage::new(parse(&with_numbers()).expect("a record"), None)
+}
+
+#[test]
+fn densities_and_weights_belong_to_the_vertex_that_a_step_makes() {
+    let dump = parse(&with_numbers()).expect("a record");
+    let vertices = &dump.records[0].vertices;
+    let pdfs = |walked: Option<Walked>| walked.map(|walked| walked.pdf);
+    let told: Vec<_> =
+        vertices.iter().map(|v| (pdfs(v.numbers.from_light), pdfs(v.numbers.from_eye))).collect();
+    let expected = [(Some(0.01), Some(0.22)), (Some(0.11), Some(0.32)), (Some(0.21), None)];
+    assert_eq!(told, expected, "of the steps before and after; what overflows is not known");
+    let lens = vertices[2].numbers.from_light.expect("a step");
+    assert_eq!((lens.weight, lens.is_discrete), (Rgb::new(21.0, 2.0, 3.0), true), "off a mirror");
+    let stage = Stage::new(dump, None);
+    let numbers: Vec<_> = stage.acts[0].numbers.iter().map(|n| pdfs(n.from_light)).collect();
+    assert_eq!(numbers, [Some(0.01), Some(0.11), Some(0.21)], "with the path");
+    let plain = parse(RECORD).expect("a record");
+    let nothing = plain.records[0].vertices.iter().all(|v| v.numbers == Numbers::default());
+    assert!(nothing, "a file need not tell them");
+    for (from, to) in [("= 01e-2", "= much"), ("= [01, 2, 3]", "= [01, 2]")] {
+        let fault = parse(&with_numbers().replacen(from, to, 1)).expect_err(to);
+        assert!(fault.problem.contains("[importance]") && fault.line < 8, "{fault:?}");
+    }
+}
+
+#[test]
+fn records_without_a_word_claim_nothing() {
+    let dump = parse(&format!("{RECORD}{RECORD}")).expect("two records");
+    let outcomes: Vec<_> = dump.steps.iter().map(|step| step.outcome).collect();
+    assert_eq!(outcomes, [Outcome::Recorded; 2], "neither a seed nor accepted");
+    let stage = Stage::new(dump, None);
+    assert!(stage.acts.iter().all(|act| act.outcome == Outcome::Recorded), "{:?}", stage.acts);
+    let lines: Vec<_> = stage.acts.iter().map(|act| act.line).collect();
+    assert_eq!(lines, [1, 71], "where they are");
+}
+
+#[test]
+fn the_picture_has_lenses_and_surfaces_that_fit() {
+    let scene = |centre: DVec3| {
+        let frame = SceneFrame { centre, scale: 256.0, light: 1.0 };
+        let positions = vec![[-512.0, -512.0, -512.0], [512.0, 640.0, 512.0]];
+        (frame, SceneMesh { positions, ..SceneMesh::default() })
+    };
+    let fits = Stage::new(parse(RECORD).expect("a record"), Some(scene(DVec3::Y * 2.0)));
+    assert_eq!(fits.warnings, [""; 0], "lamp and mirror lie within");
+    let bounds = fits.bounds().expect("a box");
+    assert_eq!(bounds.max.x, 1024.0, "the lens lies outside of the surfaces, and is shown");
+    let far = Stage::new(parse(RECORD).expect("a record"), Some(scene(DVec3::splat(90.0))));
+    assert!(far.warnings[0].contains("only 0 of 2"), "{:?}", far.warnings);
+    let bounds = far.bounds().expect("a box");
+    assert!(bounds.min.x < -20_000.0 && bounds.max.x == 512.0, "both are shown: {bounds:?}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Paths that were added up, laid over the surfaces [McGuire and Bavoil 2013].
+//! Paths that were drawn apart from the surfaces, laid over them.
 
 use shaders::BLEND;
 
@@ -6,19 +6,39 @@ use super::cover::Cover;
 use super::pipeline::{FrameGroup, Ink, module};
 use super::target::Sums;
 
-/// What lays the sums over the surfaces.
+/// What lays paths over the surfaces.
 #[derive(Debug)]
-pub(super) struct Blend(Cover);
+pub(super) struct Blend {
+    sums: Cover,
+    sheet: Cover,
+}
 
 impl Blend {
     pub(super) fn new(device: &wgpu::Device, frame: &FrameGroup) -> Self {
         let module = module(device, BLEND);
-        let shaders = (&module, "vs_blend", "fs_blend");
-        Self(Cover::new(device, frame, "blend", shaders, Ink::Over, 2))
+        let cover = |label, fragment, textures| {
+            Cover::new(device, frame, label, (&module, "vs_blend", fragment), Ink::Over, textures)
+        };
+        Self { sums: cover("blend", "fs_blend", 2), sheet: cover("sheet", "fs_sheet", 1) }
     }
 
-    /// Draws the sums over what is there.
-    pub(super) fn draw(&self, device: &wgpu::Device, pass: &mut wgpu::RenderPass<'_>, sums: &Sums) {
-        self.0.draw(device, pass, &[&sums.color.resolved, &sums.weight.resolved]);
+    /// Draws sums over what is there [McGuire and Bavoil 2013].
+    pub(super) fn draw_sums(
+        &self,
+        device: &wgpu::Device,
+        pass: &mut wgpu::RenderPass<'_>,
+        sums: &Sums,
+    ) {
+        self.sums.draw(device, pass, &[&sums.color.resolved, &sums.weight.resolved]);
+    }
+
+    /// Draws colours times their opacity over what is there.
+    pub(super) fn draw_sheet(
+        &self,
+        device: &wgpu::Device,
+        pass: &mut wgpu::RenderPass<'_>,
+        sheet: &wgpu::TextureView,
+    ) {
+        self.sheet.draw(device, pass, &[sheet]);
     }
 }

@@ -1,53 +1,13 @@
-//! Polylines: pages of paths, and drawing aids.
-
-use std::collections::BTreeMap;
+//! Polylines on the graphics card: pages of paths, and drawing aids.
 
 use shaders::{LINES, LinePoint};
 use wgpu::util::DeviceExt as _;
 
+use super::pages::{PageRange, Pages};
 use super::pipeline::{FrameGroup, Ink, Recipe, attributes, module};
-use super::progress::Crossing;
+use super::progress::{Crossing, Layer};
 
 const STRIDE: u64 = size_of::<LinePoint>() as u64;
-
-/// Which points of a page to draw: from `first` to the last one uploaded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PageRange {
-    /// The page.
-    pub serial: u64,
-    /// Its first point to be drawn, which begins a path.
-    pub first: usize,
-}
-
-/// How much of a page is on the graphics card.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Uploaded {
-    /// Revision of the page that the points are of.
-    pub revision: u32,
-    /// Paths of the page that were taken in, drawn or not.
-    pub paths: usize,
-}
-
-#[derive(Debug)]
-struct LinePage {
-    buffer: wgpu::Buffer,
-    points: usize,
-    uploaded: Uploaded,
-}
-
-impl LinePage {
-    /// Binds the points from `first` on, and answers how many they are. Offsets stand in for a first
-    /// instance, which WebGL 2 does not have.
-    fn bind(&self, pass: &mut wgpu::RenderPass<'_>, first: usize) -> u32 {
-        let start = first as u64 * STRIDE;
-        if first >= self.points {
-            return 0;
-        }
-        pass.set_vertex_buffer(0, self.buffer.slice(start..));
-        pass.set_vertex_buffer(1, self.buffer.slice(start + STRIDE..));
-        (self.points - first) as u32
-    }
-}
 
 /// One pipeline a layer.
 #[derive(Debug)]
@@ -64,15 +24,27 @@ pub(super) struct Lines {
     stacked: Pipelines,
     /// In any order.
     weighed: Pipelines,
-    pages: BTreeMap<u64, LinePage>,
-    /// Buffers of pages that are gone, for the next ones.
-    spare: Vec<wgpu::Buffer>,
-    page_points: usize,
-    aids: Option<LinePage>,
+    aids: Option<(wgpu::Buffer, usize)>,
+}
+
+/// Binds the points of a buffer from `first` on, and answers how many of `points` they are. Offsets
+/// stand in for a first instance, which WebGL 2 does not have.
+fn bind(
+    pass: &mut wgpu::RenderPass<'_>,
+    (buffer, points): (&wgpu::Buffer, usize),
+    first: usize,
+) -> u32 {
+    let start = first as u64 * STRIDE;
+    if first >= points {
+        return 0;
+    }
+    pass.set_vertex_buffer(0, buffer.slice(start..));
+    pass.set_vertex_buffer(1, buffer.slice(start + STRIDE..));
+    (points - first) as u32
 }
 
 impl Lines {
-    pub(super) fn new(device: &wgpu::Device, frame: &FrameGroup, page_points: usize) -> Self {
+    pub(super) fn new(device: &wgpu::Device, frame: &FrameGroup) -> Self {
         let module = module(device, LINES);
         let count = LinePoint::ATTRIBUTES.len() as u32;
         let (a, b) =
@@ -107,95 +79,37 @@ impl Lines {
         Self {
             stacked: pipelines((Ink::Over, "fs_stroke")),
             weighed: pipelines((Ink::Weighed, "fs_weighed")),
-            pages: BTreeMap::new(),
-            spare: Vec::new(),
-            page_points,
             aids: None,
         }
-    }
-
-    /// What of a page is here already.
-    pub(super) fn uploaded(&self, serial: u64) -> Option<Uploaded> {
-        self.pages.get(&serial).map(|page| page.uploaded)
-    }
-
-    /// Appends points to a page, or replaces all of them when the page has another revision; what
-    /// does not fit is left out.
-    pub(super) fn append(
-        &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        serial: u64,
-        uploaded: Uploaded,
-        points: &[LinePoint],
-    ) {
-        let page = self.pages.entry(serial).or_insert_with(|| {
-            let buffer = self.spare.pop().unwrap_or_else(|| {
-                device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("path page"),
-                    // One more, because the buffer is also read one point further on.
-                    size: (self.page_points as u64 + 1) * STRIDE,
-                    usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                })
-            });
-            LinePage { buffer, points: 0, uploaded }
-        });
-        if page.uploaded.revision != uploaded.revision {
-            page.points = 0;
-        }
-        page.uploaded = uploaded;
-        let room = self.page_points - page.points;
-        let points = points.get(..room).unwrap_or(points);
-        queue.write_buffer(&page.buffer, page.points as u64 * STRIDE, bytemuck::cast_slice(points));
-        page.points += points.len();
-    }
-
-    /// Gives up every page older than `first`, and all of them when there is no page any more.
-    pub(super) fn retain_from(&mut self, first: u64) {
-        let kept = self.pages.split_off(&first);
-        let gone = std::mem::replace(&mut self.pages, kept);
-        self.spare.extend(gone.into_values().map(|page| page.buffer));
-        // A cleared store would otherwise keep its memory for ever.
-        self.spare.truncate(self.pages.len().max(1));
     }
 
     pub(super) fn set_aids(&mut self, device: &wgpu::Device, points: &[LinePoint]) {
         let mut padded = points.to_vec();
         padded.push(LinePoint::default());
-        self.aids = (!points.is_empty()).then(|| LinePage {
-            buffer: device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("drawing aids"),
-                contents: bytemuck::cast_slice(&padded),
-                usage: wgpu::BufferUsages::VERTEX,
-            }),
-            points: points.len(),
-            uploaded: Uploaded::default(),
+        let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("drawing aids"),
+            contents: bytemuck::cast_slice(&padded),
+            usage: wgpu::BufferUsages::VERTEX,
         });
-    }
-
-    /// Bytes on the graphics card.
-    pub(super) fn byte_len(&self) -> u64 {
-        let buffers = (self.pages.len() + self.spare.len()) as u64;
-        buffers * (self.page_points as u64 + 1) * STRIDE
+        self.aids = (!points.is_empty()).then_some((buffer, points.len()));
     }
 
     pub(super) fn draw_aids(&self, pass: &mut wgpu::RenderPass<'_>) {
-        let Some(aids) = &self.aids else { return };
+        let Some((buffer, points)) = &self.aids else { return };
         pass.set_pipeline(&self.stacked.visible);
-        let points = aids.bind(pass, 0);
+        let points = bind(pass, (buffer, *points), 0);
         pass.draw(0..4, 0..points.saturating_sub(1));
     }
 
-    /// Draws one layer of the points of a page from `range` on, and answers how many they are.
+    /// Draws one layer of the points of a page from `range` on.
     pub(super) fn draw_page(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
-        range: PageRange,
-        layer: Layer,
+        pages: &Pages,
+        (layer, range): (Layer, PageRange),
         crossing: Crossing,
-    ) -> usize {
-        let Some(page) = self.pages.get(&range.serial) else { return 0 };
+    ) {
+        let Some(page) = pages.on_card(range.serial) else { return };
         let pipelines = match crossing {
             Crossing::Stacked => &self.stacked,
             Crossing::Weighed => &self.weighed,
@@ -205,27 +119,10 @@ impl Lines {
             Layer::Visible => (&pipelines.visible, 1),
             Layer::Dots => (&pipelines.dots, 0),
         };
-        let points = page.bind(pass, range.first);
+        let points = bind(pass, page, range.first);
         if points > less {
             pass.set_pipeline(pipeline);
             pass.draw(0..4, 0..points - less);
         }
-        points as usize
     }
-
-    /// Points that a range holds on the graphics card.
-    pub(super) fn points_of(&self, range: PageRange) -> usize {
-        self.pages.get(&range.serial).map_or(0, |page| page.points.saturating_sub(range.first))
-    }
-}
-
-/// What is drawn of the paths, one after the other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Layer {
-    /// Lines behind surfaces.
-    Hidden,
-    /// Lines in front of them.
-    Visible,
-    /// Dots at vertices.
-    Dots,
 }

@@ -7,15 +7,19 @@
 mod blend;
 mod composite;
 mod cover;
+mod kit;
 mod lines;
 mod mesh;
-mod pile;
+mod pages;
 mod pipeline;
 mod progress;
+mod read;
 mod renderer;
+mod software;
 mod target;
 mod textures;
 
-pub use lines::{PageRange, Uploaded};
+pub use pages::{PageRange, Uploaded};
 pub use progress::{Crossing, Picture};
+pub use read::read_back;
 pub use renderer::{Quality, Renderer, ViewportCallback};

@@ -101,8 +101,6 @@ pub(super) enum Ink {
     Opaque,
     /// It is covered as far as the new one is opaque.
     Over,
-    /// It covers the new one but for what shines through it, which its alpha tells.
-    Under,
     /// Sums of weighted colours, and of weights, into targets of their own.
     Weighed,
 }
@@ -123,16 +121,6 @@ impl Ink {
         },
     };
 
-    /// The product of what shines through is alpha.
-    const UNDER: wgpu::BlendState = wgpu::BlendState {
-        color: wgpu::BlendComponent {
-            src_factor: wgpu::BlendFactor::DstAlpha,
-            dst_factor: wgpu::BlendFactor::One,
-            operation: wgpu::BlendOperation::Add,
-        },
-        alpha: Self::WEIGHED.alpha,
-    };
-
     fn targets(self) -> Vec<Option<wgpu::ColorTargetState>> {
         let over = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
         let write_mask = wgpu::ColorWrites::ALL;
@@ -140,7 +128,6 @@ impl Ink {
         match self {
             Self::Opaque => vec![target(COLOR_FORMAT, None)],
             Self::Over => vec![target(COLOR_FORMAT, Some(over))],
-            Self::Under => vec![target(COLOR_FORMAT, Some(Self::UNDER))],
             Self::Weighed => vec![
                 target(COLOR_FORMAT, Some(Self::WEIGHED)),
                 target(WEIGHT_FORMAT, Some(Self::WEIGHED)),

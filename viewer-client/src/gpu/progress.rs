@@ -7,16 +7,9 @@ use std::time::{Duration, Instant};
 
 use shaders::FrameUniforms;
 
-use super::lines::{Layer, Lines, PageRange};
-
-/// What becomes of paths that cross.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Crossing {
-    /// They lie on each other, the newest on top.
-    Stacked,
-    /// They are weighed against each other, whatever their order.
-    Weighed,
-}
+use super::pages::{PageRange, Pages};
+pub use crate::raster::Crossing;
+pub(super) use crate::raster::Layer;
 
 /// What to draw.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,17 +57,17 @@ impl Picture {
     }
 
     /// Points that drawing it takes in, each as often as there are layers.
-    pub(super) fn cost(&self, lines: &Lines) -> usize {
-        let points: usize = self.paths.iter().map(|range| lines.points_of(*range)).sum();
+    pub(super) fn cost(&self, pages: &Pages) -> usize {
+        let points: usize = self.paths.iter().map(|range| pages.points_of(*range)).sum();
         points * self.layers().count()
     }
 
     /// The same picture with no more than its newest `points` points or so, for a glance.
-    pub(super) fn glance(&self, lines: &Lines, points: usize) -> Self {
+    pub(super) fn glance(&self, pages: &Pages, points: usize) -> Self {
         let mut room = points / self.layers().count().max(1);
         let mut paths = Vec::new();
         for range in &self.paths {
-            let of_page = lines.points_of(*range);
+            let of_page = pages.points_of(*range);
             if of_page > room && !paths.is_empty() {
                 break;
             }
@@ -82,16 +75,6 @@ impl Picture {
             paths.push(*range);
         }
         Self { paths, ..self.clone() }
-    }
-
-    /// The same for a picture that takes several frames, in whatever order comes out cheapest: topmost
-    /// first where the newest paths lie on top.
-    pub(super) fn steps_in_parts(&self) -> Vec<(Layer, PageRange)> {
-        let mut steps = self.steps();
-        if self.crossing == Crossing::Stacked {
-            steps.reverse();
-        }
-        steps
     }
 
     /// Everything to draw of the paths: oldest first, because newer paths lie on top.

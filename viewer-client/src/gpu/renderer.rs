@@ -1,48 +1,42 @@
 //! Everything on the graphics card, and the order in which it is drawn.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use common::TexturePreview;
 use egui_wgpu::{CallbackResources, CallbackTrait, ScreenDescriptor};
 use shaders::{LinePoint, MeshVertex};
 
-use super::blend::Blend;
 use super::composite::Composite;
-use super::lines::{Layer, Lines, PageRange, Uploaded};
-use super::mesh::Mesh;
-use super::pile::Piling;
-use super::pipeline::FrameGroup;
-use super::progress::{Allowance, Crossing, Picture};
+use super::kit::Kit;
+use super::pages::{Draws, PageRange, Uploaded};
+use super::progress::{Allowance, Layer, Picture};
+use super::software::{Painted, Software};
 use super::target::{Part, Target};
-
-/// Points of paths after which a sheet is laid under the pile.
-const SHEET_POINTS: usize = 1 << 16;
 
 /// How well to draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quality {
     /// Four samples a pixel.
     Smooth,
-    /// One, for graphics drivers that are slow.
+    /// One, and the processor draws the paths itself: where it stands in for the graphics card anyway.
     Fast,
+    /// One, and the card draws the paths: to compare both.
+    #[cfg(test)]
+    Plain,
 }
 
 /// All buffers, textures and pipelines of the viewport.
 #[derive(Debug)]
 pub struct Renderer {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
-    frame: FrameGroup,
-    mesh: Mesh,
-    lines: Lines,
-    blend: Blend,
-    piling: Piling,
+    kit: Kit,
     composite: Composite,
     /// What the window shows.
     shown: Option<Shown>,
     /// What takes its place when it is done.
     coming: Option<Coming>,
     allowance: Allowance,
+    /// Where the processor draws the paths.
+    software: Option<Software>,
     /// Grows with every upload.
     content: u64,
     /// More of the same is about to be uploaded.
@@ -78,49 +72,48 @@ impl Renderer {
         page_points: usize,
         quality: Quality,
     ) -> Self {
-        let (samples, points) = match quality {
-            Quality::Smooth => (4, 1 << 20),
-            Quality::Fast => (1, 1 << 15),
+        let (samples, draws) = match quality {
+            Quality::Smooth => (4, Draws::Card),
+            Quality::Fast => (1, Draws::Processor),
+            #[cfg(test)]
+            Quality::Plain => (1, Draws::Card),
         };
-        let frame = FrameGroup::new(&device, samples);
+        let kit = Kit::new(device, queue, samples, draws, page_points);
         Self {
-            mesh: Mesh::new(&device, &queue, &frame),
-            blend: Blend::new(&device, &frame),
-            piling: Piling::new(&device, &frame),
-            lines: Lines::new(&device, &frame, page_points),
-            composite: Composite::new(&device, &frame, format),
-            frame,
+            composite: Composite::new(&kit.device, &kit.frame, format),
+            kit,
             shown: None,
             coming: None,
-            allowance: Allowance::new(points),
+            allowance: Allowance::new(1 << 20),
+            software: (draws == Draws::Processor).then(Software::default),
             content: 0,
             uploading: false,
-            device,
-            queue,
         }
     }
 
     /// Replaces all surfaces and their textures.
     pub fn set_mesh(&mut self, corners: &[MeshVertex], textures: &[TexturePreview]) {
-        self.mesh.set(&self.device, corners);
-        self.mesh.set_textures(&self.device, &self.queue, textures);
+        let Kit { device, queue, mesh, .. } = &mut self.kit;
+        mesh.set(device, corners);
+        mesh.set_textures(device, queue, textures);
         self.content += 1;
     }
 
     /// Replaces the drawing aids.
     pub fn set_aids(&mut self, points: &[LinePoint]) {
-        self.lines.set_aids(&self.device, points);
+        self.kit.set_aids(points);
         self.content += 1;
     }
 
     /// What of a page is here already.
     pub fn uploaded(&self, serial: u64) -> Option<Uploaded> {
-        self.lines.uploaded(serial)
+        self.kit.pages.uploaded(serial)
     }
 
     /// Appends points to a page, or replaces them when the page has another revision.
     pub fn append_points(&mut self, serial: u64, uploaded: Uploaded, points: &[LinePoint]) {
-        self.lines.append(&self.device, &self.queue, serial, uploaded, points);
+        let Kit { device, queue, pages, .. } = &mut self.kit;
+        pages.append(device, queue, serial, uploaded, points);
         self.content += 1;
     }
 
@@ -137,17 +130,24 @@ impl Renderer {
 
     /// True while the window shows less than what was asked for.
     pub fn is_refining(&self) -> bool {
-        self.coming.is_some() || self.shown.as_ref().is_some_and(|shown| !shown.whole)
+        self.coming.is_some()
+            || self.software.as_ref().is_some_and(Software::is_painting)
+            || self.shown.as_ref().is_some_and(|shown| !shown.whole)
+    }
+
+    /// How long the processor has drawn in place of the graphics card since this was last asked.
+    pub fn take_drawing_time(&mut self) -> Duration {
+        self.software.as_mut().map(Software::take_time).unwrap_or_default()
     }
 
     /// Gives up every page older than `first`.
     pub fn retain_from(&mut self, first: u64) {
-        self.lines.retain_from(first);
+        self.kit.pages.retain_from(first);
     }
 
-    /// Bytes on the graphics card, textures aside.
+    /// Bytes of all pages, on the graphics card or not, textures aside.
     pub fn byte_len(&self) -> u64 {
-        self.mesh.byte_len() + self.lines.byte_len()
+        self.kit.mesh.byte_len() + self.kit.pages.byte_len()
     }
 
     fn prepare(&mut self, encoder: &mut wgpu::CommandEncoder, picture: &Picture) {
@@ -157,10 +157,17 @@ impl Renderer {
         if up_to_date {
             self.coming = None;
             self.allowance.rest();
+            if let Some(software) = &mut self.software {
+                software.rest();
+            }
+            return;
+        }
+        if self.software.is_some() {
+            self.paint(encoder, picture);
             return;
         }
         self.allowance.tick(Instant::now());
-        if picture.cost(&self.lines) <= self.allowance.points() {
+        if picture.cost(&self.kit.pages) <= self.allowance.points() {
             self.coming = None;
             self.draw_at_once(encoder, picture, picture, true);
             return;
@@ -168,7 +175,7 @@ impl Renderer {
         let seen = self.shown.as_ref().is_some_and(|shown| shown.picture.same_view(picture));
         if !seen {
             self.coming = None;
-            let glance = picture.glance(&self.lines, self.allowance.points());
+            let glance = picture.glance(&self.kit.pages, self.allowance.points());
             self.draw_at_once(encoder, &glance, picture, false);
         } else if !self.uploading {
             self.go_on(encoder, picture);
@@ -188,12 +195,40 @@ impl Renderer {
         };
         let target = match self.shown.take() {
             Some(shown) if fits(&shown) => shown.target,
-            _ => self.new_target(picture),
+            _ => self.kit.new_target(picture),
         };
-        self.composite.set_picture(&self.device, target.resolved());
-        self.frame.write(&self.queue, &drawn.uniforms);
-        self.draw(encoder, (&target, drawn), &drawn.steps(), Part { first: true, last: true });
+        self.composite.set_picture(&self.kit.device, target.resolved());
+        self.kit.frame.write(&self.kit.queue, &drawn.uniforms);
+        self.kit.draw(encoder, (&target, drawn), &drawn.steps(), Part { first: true, last: true });
         let (picture, content) = (picture.clone(), self.content);
+        self.shown = Some(Shown { target, picture, content, whole });
+    }
+
+    /// Lets the processor go on with the picture, and shows what there is of it unless the window
+    /// shows the same view already.
+    fn paint(&mut self, encoder: &mut wgpu::CommandEncoder, wanted: &Picture) {
+        let Some(software) = &mut self.software else { return };
+        let seen = self.shown.as_ref().is_some_and(|shown| shown.picture.same_view(wanted));
+        if seen && self.uploading {
+            return;
+        }
+        let shows_whole = seen && self.shown.as_ref().is_some_and(|shown| shown.whole);
+        let fits = |shown: &Shown| shown.picture.size == wanted.size;
+        let mut spare = if shows_whole {
+            None
+        } else {
+            self.shown.take().filter(fits).map(|shown| shown.target)
+        };
+        let whole = software.go_on(&self.kit, (wanted, self.content), &mut spare);
+        if shows_whole && !whole {
+            return;
+        }
+        let Some(painted) = software.show(&self.kit, encoder, spare) else { return };
+        if whole || self.uploading {
+            software.rest();
+        }
+        let Painted { target, picture, content } = painted;
+        self.composite.set_picture(&self.kit.device, target.resolved());
         self.shown = Some(Shown { target, picture, content, whole });
     }
 
@@ -202,174 +237,29 @@ impl Renderer {
     fn go_on(&mut self, encoder: &mut wgpu::CommandEncoder, wanted: &Picture) {
         let coming = self.coming.take().filter(|coming| coming.picture.same_view(wanted));
         let mut coming = coming.unwrap_or_else(|| Coming {
-            target: self.new_target_in_parts(wanted),
+            target: self.kit.new_target(wanted),
             picture: wanted.clone(),
             content: self.content,
-            steps: wanted.steps_in_parts(),
+            steps: wanted.steps(),
             next: 0,
         });
-        self.frame.write(&self.queue, &coming.picture.uniforms);
+        self.kit.frame.write(&self.kit.queue, &coming.picture.uniforms);
         let mut end = coming.next;
         let mut room = self.allowance.points();
         while let Some((_, range)) = coming.steps.get(end).filter(|_| room > 0) {
-            room = room.saturating_sub(self.lines.points_of(*range));
+            room = room.saturating_sub(self.kit.pages.points_of(*range));
             end += 1;
         }
         let part = Part { first: coming.next == 0, last: end == coming.steps.len() };
         let steps = coming.steps.get(coming.next..end).unwrap_or_default();
-        match wanted.crossing {
-            Crossing::Stacked => {
-                self.pile_up(encoder, (&coming.target, &coming.picture), steps, part);
-            }
-            Crossing::Weighed => {
-                self.draw(encoder, (&coming.target, &coming.picture), steps, part);
-            }
-        }
+        self.kit.draw(encoder, (&coming.target, &coming.picture), steps, part);
         coming.next = end;
         if part.last {
             let Coming { target, picture, content, .. } = coming;
-            self.composite.set_picture(&self.device, target.resolved());
-            let target = target.without_pile();
+            self.composite.set_picture(&self.kit.device, target.resolved());
             self.shown = Some(Shown { target, picture, content, whole: true });
         } else {
             self.coming = Some(coming);
-        }
-    }
-
-    fn new_target(&self, picture: &Picture) -> Target {
-        Target::new(&self.device, picture.size, self.frame.samples, picture.crossing)
-    }
-
-    /// Where a picture is drawn that takes several frames.
-    fn new_target_in_parts(&self, picture: &Picture) -> Target {
-        let target = self.new_target(picture);
-        match picture.crossing {
-            Crossing::Stacked => target.with_pile(&self.device, picture.size, self.frame.samples),
-            Crossing::Weighed => target,
-        }
-    }
-
-    /// Draws a part of a picture of several frames: these steps, the topmost first, as sheets under
-    /// those that are there; and at last the pile between what lies under and over the paths.
-    fn pile_up(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        (target, picture): (&Target, &Picture),
-        steps: &[(Layer, PageRange)],
-        part: Part,
-    ) {
-        let Some(pile) = target.pile() else { return };
-        if part.first {
-            // For their depth: surfaces hide paths.
-            let mut pass = target.begin(encoder, Part { first: true, last: false });
-            pass.set_bind_group(0, &self.frame.group, &[]);
-            self.begin(&mut pass, picture);
-        }
-        let mut first = part.first;
-        for sheet in self.sheets(steps) {
-            let mut pass = target.begin_sheet(encoder, pile);
-            pass.set_bind_group(0, &self.frame.group, &[]);
-            if !first {
-                self.piling.shut(&self.device, &mut pass, pile);
-            }
-            for (layer, range) in sheet.iter().rev() {
-                self.lines.draw_page(&mut pass, *range, *layer, Crossing::Stacked);
-            }
-            drop(pass);
-            let mut pass = target.begin_pile(encoder, pile, first);
-            pass.set_bind_group(0, &self.frame.group, &[]);
-            self.piling.under(&self.device, &mut pass, pile);
-            first = false;
-        }
-        if part.last {
-            let mut pass = target.begin(encoder, Part { first: true, last: true });
-            pass.set_bind_group(0, &self.frame.group, &[]);
-            self.begin(&mut pass, picture);
-            self.piling.over(&self.device, &mut pass, pile);
-            self.end(&mut pass, picture);
-        }
-    }
-
-    /// Steps that share a sheet: few enough for the next ones to profit from what they fill.
-    fn sheets<'a>(
-        &'a self,
-        steps: &'a [(Layer, PageRange)],
-    ) -> impl Iterator<Item = &'a [(Layer, PageRange)]> {
-        let mut rest = steps;
-        std::iter::from_fn(move || {
-            let mut points = 0;
-            let fits = |(_, range): &&(Layer, PageRange)| {
-                let room = points < SHEET_POINTS;
-                points += self.lines.points_of(*range);
-                room
-            };
-            let (sheet, others) = rest.split_at(rest.iter().take_while(fits).count());
-            rest = others;
-            (!sheet.is_empty()).then_some(sheet)
-        })
-    }
-
-    /// Draws a part of a picture: what lies under the paths, these steps of the paths, and what lies
-    /// over them.
-    fn draw(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        (target, picture): (&Target, &Picture),
-        steps: &[(Layer, PageRange)],
-        part: Part,
-    ) {
-        let Some(sums) = target.sums() else {
-            let mut pass = target.begin(encoder, part);
-            pass.set_bind_group(0, &self.frame.group, &[]);
-            if part.first {
-                self.begin(&mut pass, picture);
-            }
-            self.draw_steps(&mut pass, steps, Crossing::Stacked);
-            if part.last {
-                self.end(&mut pass, picture);
-            }
-            return;
-        };
-        if part.first {
-            let mut pass = target.begin(encoder, Part { last: false, ..part });
-            pass.set_bind_group(0, &self.frame.group, &[]);
-            self.begin(&mut pass, picture);
-        }
-        let mut pass = target.begin_sums(encoder, sums, part);
-        pass.set_bind_group(0, &self.frame.group, &[]);
-        self.draw_steps(&mut pass, steps, Crossing::Weighed);
-        drop(pass);
-        if part.last {
-            let mut pass = target.begin(encoder, Part { first: false, ..part });
-            pass.set_bind_group(0, &self.frame.group, &[]);
-            self.blend.draw(&self.device, &mut pass, sums);
-            self.end(&mut pass, picture);
-        }
-    }
-
-    fn draw_steps(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        steps: &[(Layer, PageRange)],
-        crossing: Crossing,
-    ) {
-        for (layer, range) in steps {
-            self.lines.draw_page(pass, *range, *layer, crossing);
-        }
-    }
-
-    /// What lies under the paths.
-    fn begin(&self, pass: &mut wgpu::RenderPass<'_>, picture: &Picture) {
-        if picture.surfaces {
-            self.mesh.draw_opaque(pass);
-        }
-        self.lines.draw_aids(pass);
-    }
-
-    /// What lies over them.
-    fn end(&self, pass: &mut wgpu::RenderPass<'_>, picture: &Picture) {
-        if picture.surfaces {
-            self.mesh.draw_translucent(pass);
         }
     }
 }
@@ -408,7 +298,7 @@ impl CallbackTrait for ViewportCallback {
         resources: &CallbackResources,
     ) {
         if let Some(renderer) = resources.get::<Renderer>() {
-            renderer.composite.draw(pass, &renderer.frame);
+            renderer.composite.draw(pass, &renderer.kit.frame);
         }
     }
 }

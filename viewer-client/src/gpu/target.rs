@@ -24,7 +24,6 @@ pub(super) struct Target {
     color: Layer,
     depth: wgpu::TextureView,
     sums: Option<Sums>,
-    pile: Option<Pile>,
 }
 
 /// A texture that is drawn into.
@@ -45,15 +44,6 @@ pub(super) struct Sums {
     pub(super) weight: Layer,
 }
 
-/// The paths that are drawn so far, where they come in several sheets.
-#[derive(Debug)]
-pub(super) struct Pile {
-    /// The newest sheets, as they lie on each other.
-    pub(super) whole: Layer,
-    /// The next one.
-    pub(super) sheet: Layer,
-}
-
 impl Target {
     pub(super) fn new(
         device: &wgpu::Device,
@@ -62,7 +52,11 @@ impl Target {
         crossing: Crossing,
     ) -> Self {
         let layer = |label, format| Layer::new(device, (label, format), size, samples);
-        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let mut usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        if samples == 1 {
+            // The processor, too, needs to know what surfaces hide.
+            usage |= wgpu::TextureUsages::COPY_SRC;
+        }
         Self {
             color: layer("picture", COLOR_FORMAT),
             depth: view(device, ("picture depth", DEPTH_FORMAT), size, samples, usage),
@@ -70,20 +64,7 @@ impl Target {
                 color: layer("sum of colours", COLOR_FORMAT),
                 weight: layer("sum of weights", WEIGHT_FORMAT),
             }),
-            pile: None,
         }
-    }
-
-    /// Makes room for paths in several sheets.
-    pub(super) fn with_pile(self, device: &wgpu::Device, size: [u32; 2], samples: u32) -> Self {
-        let layer = |label| Layer::new(device, (label, COLOR_FORMAT), size, samples);
-        let pile = Pile { whole: layer("pile"), sheet: layer("sheet") };
-        Self { pile: Some(pile), ..self }
-    }
-
-    /// Gives up the room for several sheets.
-    pub(super) fn without_pile(self) -> Self {
-        Self { pile: None, ..self }
     }
 
     /// The finished picture.
@@ -91,38 +72,14 @@ impl Target {
         &self.color.resolved
     }
 
+    /// How near everything is, where a pixel has one sample.
+    pub(super) fn depth(&self) -> &wgpu::Texture {
+        self.depth.texture()
+    }
+
     /// Where paths are added up, if they are.
     pub(super) fn sums(&self) -> Option<&Sums> {
         self.sums.as_ref()
-    }
-
-    /// Where several sheets of paths lie, if they do.
-    pub(super) fn pile(&self) -> Option<&Pile> {
-        self.pile.as_ref()
-    }
-
-    /// Begins a pass that draws a sheet of paths among the surfaces that are there.
-    pub(super) fn begin_sheet<'a>(
-        &self,
-        encoder: &'a mut wgpu::CommandEncoder,
-        pile: &Pile,
-    ) -> wgpu::RenderPass<'a> {
-        let only = Part { first: true, last: true };
-        let attachment = pile.sheet.attachment(only, wgpu::Color::TRANSPARENT);
-        self.pass(encoder, "sheet", &[Some(attachment)], Part { first: false, last: false })
-    }
-
-    /// Begins a pass that lays a sheet under the pile; the first one of a picture does so on nothing.
-    pub(super) fn begin_pile<'a>(
-        &self,
-        encoder: &'a mut wgpu::CommandEncoder,
-        pile: &Pile,
-        first: bool,
-    ) -> wgpu::RenderPass<'a> {
-        let part = Part { first, last: false };
-        // Everything shines through.
-        let attachment = pile.whole.attachment(part, wgpu::Color::BLACK);
-        self.pass(encoder, "pile", &[Some(attachment)], Part { first: false, last: false })
     }
 
     /// Begins a pass that draws a part of the picture.

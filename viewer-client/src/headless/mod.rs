@@ -8,7 +8,7 @@ use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguratio
 
 use crate::app::Viewer;
 use crate::connection::{Link, Peer, Waker};
-use crate::gpu::{Quality, Renderer};
+use crate::gpu::{Quality, Renderer, read_back};
 use crate::window;
 
 /// A daemon that has sent nothing for this long will not.
@@ -86,7 +86,7 @@ async fn graphics(backends: wgpu::Backends) -> Result<RenderState, egui_wgpu::Wg
 /// How long a frame took.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrameCost {
-    /// Until everything was told to the graphics card.
+    /// Until everything was told to the graphics card, but for what stands in for it.
     pub cpu: Duration,
     /// Until the picture was done.
     pub wall: Duration,
@@ -159,6 +159,12 @@ impl Stage {
         renderer.callback_resources.get::<Renderer>().is_some_and(Renderer::is_refining)
     }
 
+    fn take_drawing_time(&self) -> Duration {
+        let mut renderer = self.gpu.renderer.write();
+        let renderer = renderer.callback_resources.get_mut::<Renderer>();
+        renderer.map(Renderer::take_drawing_time).unwrap_or_default()
+    }
+
     /// One frame of the interface.
     pub fn frame(&mut self, viewer: &mut Viewer) -> anyhow::Result<FrameCost> {
         let started = Instant::now();
@@ -183,7 +189,7 @@ impl Stage {
         let primitives = self.ctx.tessellate(output.shapes, output.pixels_per_point);
         let commands =
             self.encode(&primitives, &mut output.textures_delta, output.pixels_per_point);
-        let cpu = started.elapsed();
+        let cpu = started.elapsed().saturating_sub(self.take_drawing_time());
         self.gpu.queue.submit(commands);
         let done = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
         done.context("the graphics driver gave up")?;
@@ -253,39 +259,9 @@ impl Stage {
     fn read_back(&self) -> anyhow::Result<image::RgbaImage> {
         let RenderState { device, queue, .. } = &self.gpu;
         let [width, height] = self.size;
-        let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("read back"),
-            size: u64::from(row) * u64::from(height),
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let mut encoder = device
+        let encoder = device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
-        encoder.copy_texture_to_buffer(
-            self.target.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(row),
-                    rows_per_image: None,
-                },
-            },
-            self.target.size(),
-        );
-        queue.submit(Some(encoder.finish()));
-        let (sender, receiver) = std::sync::mpsc::sync_channel(1);
-        buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver waits below; it is gone only when the wait failed.
-            drop(sender.send(result));
-        });
-        device.poll(wgpu::PollType::wait_indefinitely()).context("the graphics driver gave up")?;
-        receiver.recv().context("the picture was never mapped")??;
-        let mapped = buffer.get_mapped_range(..).context("the picture cannot be read")?;
-        let rows = mapped.chunks_exact(row as usize);
-        let bytes: Vec<u8> =
-            rows.flat_map(|r| r.iter().take(4 * width as usize)).copied().collect();
+        let bytes = read_back((device, queue), encoder, self.target.as_image_copy(), 4)?;
         image::RgbaImage::from_raw(width, height, bytes).context("the picture has a wrong size")
     }
 }
@@ -294,3 +270,5 @@ impl Stage {
 mod look_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod twin_tests;

@@ -81,6 +81,7 @@ pub(super) const MOUSE: &[(&str, &str)] = &[
     ("Right drag", "turn the camera"),
     ("Shift+drag", "shift the view"),
     ("Wheel", "come closer to the point under the cursor"),
+    ("Ctrl+C", "copy the section, or the pixel of the image, under the cursor"),
 ];
 
 /// True for keys that are taken though no binding names them: the viewport has them.

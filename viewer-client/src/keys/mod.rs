@@ -165,6 +165,7 @@ const MOUSE: &[(&str, &str)] = &[
     ("Delete", "remove the chosen sphere"),
     ("Wheel", "come closer to the point under the cursor"),
     ("W A S D, Q E", "while flying: move, down and up; Shift is faster"),
+    ("Ctrl+C", "copy the section, or the pixel of the image, under the cursor"),
 ];
 
 const fn plain(key: Key) -> KeyboardShortcut {
@@ -287,7 +288,7 @@ const BINDINGS: &[Binding] = &[
         Command::Desk(DeskCommand::Share)
     }),
     bind(plain(Key::R), Group::View, "connect now", |_| Command::Reconnect),
-    bind(plain(Key::F1), Group::View, "this sheet; ? does it, too", |_| help()),
+    bind(plain(Key::F1), Group::View, "keys and mouse; also ?", |_| help()),
     bind(ctrl(Key::Q), Group::View, "quit", |_| Command::Quit),
 ];
 
@@ -311,7 +312,7 @@ fn play_or_pause(world: &World<'_>) -> Command {
         return command;
     }
     let state = &world.status.steering.explorer;
-    let rate = if state.rate >= MIN_RATE { state.rate } else { 2.0 };
+    let rate = state.rate.max(MIN_RATE);
     let paused = state.pace == Pace::Paused;
     explore(if paused { ExplorerCommand::Play(rate) } else { ExplorerCommand::Pause })
 }
@@ -344,8 +345,19 @@ pub fn pressed(ctx: &egui::Context, world: &World<'_>, commands: &mut Vec<Comman
     if ctx.egui_wants_keyboard_input() || egui::Popup::is_any_open(ctx) {
         return;
     }
+    let is_over = ctx.memory(|memory| memory.top_modal_layer().is_some());
+    if is_over && !world.settings.layout.help {
+        return;
+    }
     if ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Questionmark)) {
         commands.push(help());
+    }
+    if is_over {
+        // The sheet of keys: what opened it closes it, and nothing behind it hears a key.
+        if ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F1)) {
+            commands.push(help());
+        }
+        return;
     }
     let preset = world.settings.layout.keys;
     // Those with modifiers first: without them, a key also fits its plain binding.

@@ -1,6 +1,6 @@
 //! The menu of connections: where to, where one was, and what to pass on.
 
-use egui::{Button, RichText, TextEdit, Ui};
+use egui::{Align2, Button, RichText, TextEdit, Ui};
 
 use crate::command::{Command, DeskCommand, HOME};
 use crate::world::World;
@@ -61,7 +61,9 @@ impl ConnectMenu {
 /// A text and a button; the text when the button was clicked.
 fn line(ui: &mut Ui, text: &mut String, hint: &str, button: &str) -> Option<String> {
     ui.horizontal(|ui| {
-        let edit = ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(140.0));
+        // A line is higher than its text, which would otherwise stick to the upper edge.
+        let edit = TextEdit::singleline(text).align(Align2::LEFT_CENTER);
+        let edit = ui.add(edit.hint_text(hint).desired_width(140.0));
         let entered = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         let full = !text.trim().is_empty();
         let clicked = ui.add_enabled(full, Button::new(button)).clicked();

@@ -7,6 +7,7 @@ use egui::containers::menu::MenuButton;
 use egui::{Align, Button, Grid, Label, Layout, Response, RichText, Sense, Ui, vec2};
 
 use super::sheets;
+use super::widgets::scrolling;
 use crate::command::{Command, DeskCommand, LayoutCommand, Move, PanelName, Source, Switch};
 use crate::keys::{bindings, key_name};
 use crate::settings::Layout as Settled;
@@ -32,7 +33,7 @@ pub(super) fn show(ui: &mut Ui, name: PanelName, world: &World<'_>, commands: &m
             copy = menu(ui, name, &world.settings.layout, &mut push);
             let mark = Button::new(RichText::new("?").weak()).frame(false);
             let menu = MenuButton::from_button(mark);
-            let (response, _) = menu.ui(ui, |ui| sheet(ui, name, world));
+            let (response, _) = menu.ui(ui, |ui| scrolling(ui, |ui| sheet(ui, name, world)));
             response.on_hover_text(format!("What {} is for", name.title()));
         });
     });

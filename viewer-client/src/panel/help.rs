@@ -1,9 +1,9 @@
 //! The sheet of keys.
 
-use egui::{Align, Button, Frame, Grid, Id, Label, Layout, Modal, RichText, Ui};
+use egui::{Align, Button, Frame, Grid, Id, Label, Layout, Modal, RichText, Ui, Vec2, vec2};
 
 use super::Panel;
-use super::widgets::capitalised;
+use super::widgets::{capitalised, scrolling_within};
 use crate::command::{Command, LayoutCommand, Switch};
 use crate::keys::{Group, KeyPreset, MousePreset, bindings, key_name};
 use crate::settings::Layout as Settled;
@@ -12,6 +12,13 @@ use crate::world::World;
 
 /// Widest that the sheet gets, in points.
 const WIDTH: f32 = 1080.0;
+/// Narrowest that a column of it may be, in points: a key, and a few words beside it.
+const COLUMN: f32 = 270.0;
+/// Points of the window that the lists leave free: for the rim, and for the heading above them.
+const AROUND: Vec2 = vec2(60.0, 110.0);
+
+/// A heading, and keys with what they do.
+type List = (&'static str, Vec<(String, &'static str)>);
 
 /// Every key and mouse button.
 #[derive(Debug)]
@@ -34,55 +41,82 @@ impl Panel for Help {
 
 /// The sheet; true when its button was clicked.
 fn sheet(ui: &mut Ui, layout: &Settled, commands: &mut Vec<Command>) -> bool {
-    let preset = layout.keys;
-    let width = (ui.ctx().content_rect().width() - 60.0).min(WIDTH);
-    ui.set_width(width);
-    ui.label(RichText::new("Keys and mouse").heading().strong());
-    ui.add_space(8.0);
-    ui.columns(3, |columns| {
-        if let [left, middle, right] = columns {
-            let drags = match preset {
-                KeyPreset::Today => layout.mouse.drags(),
-                KeyPreset::Classic => &[],
-            };
-            let mouse = preset.mouse().iter().chain(drags);
-            let mouse = mouse.map(|(key, help)| ((*key).to_owned(), *help));
-            section(left, "Mouse", mouse);
-            section(left, Group::Camera.title(), keys(preset, Group::Camera));
-            section(middle, Group::Paths.title(), keys(preset, Group::Paths));
-            section(middle, Group::Explorer.title(), keys(preset, Group::Explorer));
-            section(right, Group::View.title(), keys(preset, Group::View));
-        }
-    });
-    ui.horizontal(|ui| {
-        let text = "A path starts at the light and ends at the camera.";
-        ui.label(RichText::new(text).weak());
+    let window = ui.ctx().content_rect().size();
+    ui.set_width((window.x - AROUND.x).min(WIDTH));
+    let close = ui.horizontal(|ui| {
+        ui.label(RichText::new("Keys and mouse").heading().strong());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let close = ui.button("Close").on_hover_text("? or Escape").clicked();
-            for other in KeyPreset::ALL.into_iter().rev() {
-                let (name, tip) = match other {
-                    KeyPreset::Today => ("Today's keys", "Those of today's programs"),
-                    KeyPreset::Classic => ("Keys of 2014", "Those of the first Lvis"),
-                };
-                let button = Button::selectable(preset == other, name);
-                if ui.add(button).on_hover_text(tip).clicked() {
-                    commands.push(Command::Layout(LayoutCommand::Keys(other)));
-                }
-            }
-            if preset == KeyPreset::Today {
-                ui.separator();
-                mice(ui, layout.mouse, commands);
-            }
-            close
+            ui.button("Close").on_hover_text("? or Escape").clicked()
         })
         .inner
-    })
-    .inner
+    });
+    ui.add_space(8.0);
+    // The heading stays; all else scrolls where the window is low.
+    scrolling_within(ui, window.y - AROUND.y, |ui| {
+        lists(ui, layout);
+        choices(ui, layout, commands);
+    });
+    close.inner
 }
 
-/// What dragging with the mouse does, from the right to the left.
+/// The lists, beside each other as far as there is room for their words.
+fn lists(ui: &mut Ui, layout: &Settled) {
+    let preset = layout.keys;
+    let drags = match preset {
+        KeyPreset::Today => layout.mouse.drags(),
+        KeyPreset::Classic => &[],
+    };
+    let mouse = preset.mouse().iter().chain(drags);
+    let mouse = mouse.map(|(key, help)| ((*key).to_owned(), *help)).collect();
+    let of = |group: Group| (group.title(), keys(preset, group));
+    let lists: [List; 5] = [
+        ("Mouse", mouse),
+        of(Group::Camera),
+        of(Group::Paths),
+        of(Group::Explorer),
+        of(Group::View),
+    ];
+    let many = ((ui.available_width() / COLUMN) as usize).clamp(1, 3);
+    let places: [usize; 5] = match many {
+        1 => [0; 5],
+        2 => [0, 0, 0, 1, 1],
+        _ => [0, 0, 1, 1, 2],
+    };
+    ui.columns(many, |columns| {
+        for (place, (title, lines)) in places.into_iter().zip(lists) {
+            if let Some(column) = columns.get_mut(place) {
+                section(column, title, lines);
+            }
+        }
+    });
+}
+
+/// Whose keys and whose mouse.
+fn choices(ui: &mut Ui, layout: &Settled, commands: &mut Vec<Command>) {
+    let text = "A path starts at the light and ends at the camera.";
+    ui.label(RichText::new(text).weak());
+    ui.horizontal_wrapped(|ui| {
+        for preset in KeyPreset::ALL {
+            let (name, tip) = match preset {
+                KeyPreset::Today => ("Today's keys", "Those of today's programs"),
+                KeyPreset::Classic => ("Keys of 2014", "Those of the first Lvis"),
+            };
+            let button = Button::selectable(preset == layout.keys, name);
+            if ui.add(button).on_hover_text(tip).clicked() {
+                commands.push(Command::Layout(LayoutCommand::Keys(preset)));
+            }
+        }
+        if layout.keys == KeyPreset::Today {
+            ui.add_space(12.0);
+            mice(ui, layout.mouse, commands);
+        }
+    });
+}
+
+/// What dragging with the mouse does.
 fn mice(ui: &mut Ui, chosen: MousePreset, commands: &mut Vec<Command>) {
-    for preset in MousePreset::ALL.into_iter().rev() {
+    ui.label(RichText::new("Mouse as in").weak());
+    for preset in MousePreset::ALL {
         let name = capitalised(&preset.to_string());
         let first = preset.drags().first().map_or("", |(drag, _)| drag);
         let tip = format!("Drag as in {name}: {first} turns");
@@ -91,7 +125,6 @@ fn mice(ui: &mut Ui, chosen: MousePreset, commands: &mut Vec<Command>) {
             commands.push(Command::Layout(LayoutCommand::Mouse(preset)));
         }
     }
-    ui.label(RichText::new("Mouse as in").weak());
 }
 
 fn keys(preset: KeyPreset, group: Group) -> Vec<(String, &'static str)> {
@@ -99,7 +132,7 @@ fn keys(preset: KeyPreset, group: Group) -> Vec<(String, &'static str)> {
     of_group.map(|b| (key_name(b.shortcut), b.help)).collect()
 }
 
-fn section(ui: &mut Ui, title: &str, lines: impl IntoIterator<Item = (String, &'static str)>) {
+fn section(ui: &mut Ui, title: &str, lines: Vec<(String, &'static str)>) {
     ui.label(RichText::new(title).strong().color(theme::accent(ui.visuals().dark_mode)));
     Grid::new(title).num_columns(2).spacing([14.0, 4.0]).show(ui, |ui| {
         for (key, help) in lines {

@@ -1,6 +1,6 @@
 //! The first minute: what to try, until the user has seen it.
 
-use egui::{Align2, Area, Frame, Grid, Id, Label, Order, RichText, Ui, vec2};
+use egui::{Align2, Area, Frame, Grid, Id, Order, Rect, RichText, Ui, vec2};
 
 use super::Panel;
 use crate::command::{Command, LayoutCommand, Switch};
@@ -16,6 +16,13 @@ const STEPS: [(&str, &str); 5] = [
     ("F1", "every key and mouse button"),
 ];
 
+/// Distance from the lower edge of the view, in points.
+const MARGIN: f32 = 14.0;
+/// In a narrower view, in points, there is no room beside the legend, only above it.
+const NARROW: f32 = 640.0;
+/// Height of the legend as it is at first, and of the axes, in points.
+const LEGEND: f32 = 84.0;
+
 /// What to try first.
 #[derive(Debug)]
 pub(super) struct Hint;
@@ -25,31 +32,37 @@ impl Panel for Hint {
         if !world.settings.layout.hint || world.model.is_none() {
             return;
         }
+        let view = ui.max_rect();
         Area::new(Id::unique("hint"))
             .order(Order::Middle)
-            .anchor(Align2::CENTER_TOP, vec2(0.0, 56.0))
+            .pivot(Align2::CENTER_BOTTOM)
+            .fixed_pos(view.center_bottom() - vec2(0.0, lift(view)))
             .show(ui.ctx(), |ui| card(ui, commands));
     }
 }
 
+/// How far above the lower edge of the view it lies: what the colours say stays to be seen.
+fn lift(view: Rect) -> f32 {
+    if view.width() < NARROW { MARGIN + LEGEND } else { MARGIN }
+}
+
 fn card(ui: &mut Ui, commands: &mut Vec<Command>) {
-    Frame::popup(ui.style()).inner_margin(16).show(ui, |ui| {
-        ui.set_max_width(400.0);
-        let text = "These lines are paths of light, as Metropolis chains find them.";
-        ui.label(RichText::new(text).strong());
-        ui.add_space(4.0);
-        Grid::new("first steps").num_columns(2).spacing([14.0, 4.0]).show(ui, |ui| {
+    Frame::popup(ui.style()).inner_margin(9).show(ui, |ui| {
+        ui.spacing_mut().interact_size.y = 0.0;
+        ui.horizontal(|ui| {
+            let text = "The lines are paths of light, as the chains find them.";
+            ui.label(RichText::new(text).small().strong());
+            if ui.small_button("Got it").clicked() {
+                commands.push(Command::Layout(LayoutCommand::Hint(Switch::Off)));
+            }
+        });
+        let accent = theme::accent(ui.visuals().dark_mode);
+        Grid::new("first steps").num_columns(2).spacing([10.0, 1.0]).show(ui, |ui| {
             for (action, effect) in STEPS {
-                ui.label(
-                    RichText::new(action).strong().color(theme::accent(ui.visuals().dark_mode)),
-                );
-                ui.add(Label::new(effect).wrap());
+                ui.label(RichText::new(action).small().strong().color(accent));
+                ui.label(RichText::new(effect).small());
                 ui.end_row();
             }
         });
-        ui.add_space(4.0);
-        if ui.button("Got it").clicked() {
-            commands.push(Command::Layout(LayoutCommand::Hint(Switch::Off)));
-        }
     });
 }

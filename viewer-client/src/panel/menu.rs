@@ -5,6 +5,7 @@ use egui::{Align, Button, Label, Layout, MenuBar, PopupCloseBehavior, RichText, 
 
 use super::Panel;
 use super::connect::ConnectMenu;
+use super::widgets::{capitalised, scrolling};
 use crate::command::{Command, LayoutCommand, PanelName, Switch, ThemeName};
 use crate::keys::{Binding, Group, bindings, key_name};
 use crate::theme;
@@ -28,14 +29,18 @@ impl Panel for Menu {
             let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
             MenuButton::new("Connection")
                 .config(config)
-                .ui(ui, |ui| self.connection.show(ui, world, commands));
-            ui.menu_button("Camera", |ui| group(ui, world, Group::Camera, commands));
-            ui.menu_button("Paths", |ui| group(ui, world, Group::Paths, commands));
-            ui.menu_button("Explorer", |ui| group(ui, world, Group::Explorer, commands));
+                .ui(ui, |ui| scrolling(ui, |ui| self.connection.show(ui, world, commands)));
+            for (name, of) in
+                [("Camera", Group::Camera), ("Paths", Group::Paths), ("Explorer", Group::Explorer)]
+            {
+                ui.menu_button(name, |ui| scrolling(ui, |ui| group(ui, world, of, commands)));
+            }
             ui.menu_button("View", |ui| {
-                windows(ui, world, commands);
-                ui.separator();
-                group(ui, world, Group::View, commands);
+                scrolling(ui, |ui| {
+                    windows(ui, world, commands);
+                    ui.separator();
+                    group(ui, world, Group::View, commands);
+                });
             });
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 right(ui, world, commands);
@@ -53,7 +58,7 @@ fn group(ui: &mut Ui, world: &World<'_>, group: Group, commands: &mut Vec<Comman
 }
 
 fn item(ui: &mut Ui, world: &World<'_>, binding: &Binding, commands: &mut Vec<Command>) {
-    let label = super::widgets::capitalised(binding.help);
+    let label = capitalised(binding.help);
     let key = key_name(binding.shortcut);
     if ui.add(Button::new(label).shortcut_text(key)).clicked() {
         commands.push((binding.command)(world));

@@ -11,6 +11,9 @@ use crate::playback::Playback;
 use crate::theme;
 use crate::world::World;
 
+/// Warnings that are shown.
+const MOST_WARNINGS: usize = 5;
+
 /// The controls of a file of paths; blank without one.
 #[derive(Debug)]
 pub(super) struct PlaybackPanel;
@@ -22,6 +25,10 @@ impl Panel for PlaybackPanel {
         scrubber(ui, playback, commands);
         if let Some(step) = playback.step() {
             describe(ui, playback.stage(), step);
+        }
+        for warning in playback.stage().warnings.iter().take(MOST_WARNINGS) {
+            let text = RichText::new(format::sentence(warning)).color(theme::BUSY).small();
+            ui.add(Label::new(text).wrap());
         }
         ui.add_space(6.0);
         tally(ui, playback.stage());
@@ -47,7 +54,8 @@ fn transport(ui: &mut Ui, playback: &Playback, commands: &mut Vec<Command>) {
         button(ui, "Step", "One step (N)", PlayCommand::By(1));
         button(ui, "Accepted", "On to the next accepted step (Shift+N)", PlayCommand::Accepted);
     });
-    let text = format!("Step {} of {count}", position + 1);
+    let word = playback.word();
+    let text = format!("{word}, step {} of {count}", position + 1);
     ui.label(RichText::new(text).weak());
 }
 
@@ -75,14 +83,18 @@ fn describe(ui: &mut Ui, stage: &Stage, step: &Step) {
         }
         let (text, color) = match step.outcome {
             Outcome::Seed => ("seed of the chain".to_owned(), theme::ACCENT),
-            Outcome::Accepted(Some(a)) => (format!("accepted, a = {a:.4}"), theme::GOOD),
-            Outcome::Accepted(None) => ("accepted".to_owned(), theme::GOOD),
+            Outcome::Accepted(a) => (format!("accepted, a = {a:.4}"), theme::GOOD),
             Outcome::Rejected(a) => (format!("rejected, a = {a:.4}"), theme::BUSY),
             Outcome::Failed => ("failed: no proposal".to_owned(), theme::BAD),
+            Outcome::Recorded => ("how it came about is not told".to_owned(), theme::ACCENT),
         };
         ui.label(RichText::new(text).color(color).strong());
     });
-    let text = format!("Chain {}, step {}, line {}", step.chain, step.number, step.line);
+    let text = if step.outcome == Outcome::Recorded {
+        format!("Record of line {}", step.line)
+    } else {
+        format!("Chain {}, step {}, line {}", step.chain, step.number, step.line)
+    };
     ui.label(RichText::new(text).weak());
     if let Some([x, y]) = step.pixel {
         row(ui, "Pixel", "Where the proposal meets the film", |ui| {
@@ -102,8 +114,8 @@ fn describe(ui: &mut Ui, stage: &Stage, step: &Step) {
 /// What became of all steps, mutation by mutation.
 fn tally(ui: &mut Ui, stage: &Stage) {
     if !stage.annotated {
-        let text =
-            "The file tells accepted paths only; one with `#` lines tells rejected steps, too.";
+        let text = "The file has paths alone, and not which chain, step or mutation made them; one \
+                    with `#` lines tells that, and rejected steps, too.";
         ui.add(Label::new(RichText::new(text).weak().small()).wrap());
         return;
     }

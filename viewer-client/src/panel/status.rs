@@ -1,5 +1,7 @@
 //! The bar at the foot: connection, rates, losses, memory.
 
+use std::time::Duration;
+
 use common::{Queue, Statistics};
 use egui::{Align, Label, Layout, RichText, Sense, Ui};
 
@@ -7,7 +9,7 @@ use super::Panel;
 use super::widgets::dot;
 use crate::command::{Command, DeskCommand, LayoutCommand, Source, Switch};
 use crate::format;
-use crate::status::{LinkState, Status};
+use crate::status::{LinkState, SILENCE, Status};
 use crate::theme;
 use crate::world::World;
 
@@ -19,7 +21,8 @@ impl Panel for StatusBar {
     fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
         let bar = ui.horizontal(|ui| {
             connection(ui, world, commands);
-            if world.status.is_connected() && world.playback.is_none() {
+            let answers = world.status.silence(world.now).is_none();
+            if world.status.is_connected() && answers && world.playback.is_none() {
                 session(ui, world);
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -28,7 +31,8 @@ impl Panel for StatusBar {
                 if keys.clicked() {
                     commands.push(Command::Layout(LayoutCommand::Help(Switch::Toggle)));
                 }
-                figures(ui, world);
+                // What was true when the daemon spoke last.
+                ui.add_enabled_ui(answers, |ui| figures(ui, world));
             });
         });
         bar.response.interact(Sense::click()).context_menu(|ui| {
@@ -45,9 +49,20 @@ fn connection(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     let place = place(status);
     match &status.link {
         LinkState::Connected => {
-            dot(ui, theme::GOOD);
-            let word = if world.playback.is_some() { "Playing" } else { "Connected to" };
-            let text = format!("{word} {place}");
+            let playing = world.playback.is_some();
+            if !playing {
+                ui.ctx().request_repaint_after(SILENCE);
+            }
+            let silence = status.silence(world.now).filter(|_| !playing);
+            dot(ui, if silence.is_some() { theme::BUSY } else { theme::GOOD });
+            let text = match (silence, playing) {
+                (Some(silence), _) => {
+                    ui.ctx().request_repaint_after(Duration::from_secs(1));
+                    format!("No answer from {place} for {:.0} s", silence.as_secs_f32())
+                }
+                (None, true) => format!("File {place}"),
+                (None, false) => format!("Connected to {place}"),
+            };
             let tip = status.welcome.as_ref().map_or_else(String::new, |w| {
                 format!(
                     "Session {}, daemon {}, connection made anew {} times",

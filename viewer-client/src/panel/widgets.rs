@@ -4,8 +4,8 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 
 use egui::{
-    Align, Color32, ComboBox, Label, Layout, Rect, Response, RichText, Sense, Slider, Stroke,
-    StrokeKind, Ui, WidgetText, pos2, vec2,
+    Align, Color32, ComboBox, Label, Layout, Rect, Response, RichText, ScrollArea, Sense, Slider,
+    Stroke, StrokeKind, TextWrapMode, Ui, WidgetText, pos2, vec2,
 };
 
 use crate::command::Switch;
@@ -13,6 +13,10 @@ use crate::theme;
 
 /// Width of the labels of a form in points.
 const LABEL_WIDTH: f32 = 74.0;
+/// Height of the bar of menus, and of the rim of a menu, in points.
+const ABOVE_MENU: f32 = 64.0;
+/// What scrolls is never lower than this, in points.
+const LOWEST: f32 = 80.0;
 
 /// A label and what belongs to it, in one line.
 pub(super) fn row<R>(ui: &mut Ui, label: &str, tip: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
@@ -101,6 +105,28 @@ pub(super) fn choice<T: Copy + PartialEq + Display>(
             .on_hover_text(tip);
         (chosen != value).then_some(chosen)
     })
+}
+
+/// What a menu holds; it scrolls where the window is too low for it below the bar of menus.
+pub(super) fn scrolling<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let most = ui.ctx().content_rect().height() - ABOVE_MENU;
+    scrolling_within(ui, most, |ui| {
+        // The bar for scrolling takes its room from lines that were measured without it.
+        ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);
+        add(ui)
+    })
+}
+
+/// What is at most so many points high, and scrolls beyond that.
+pub(super) fn scrolling_within<R>(ui: &mut Ui, most: f32, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let most = most.max(LOWEST);
+    // Apart, since what stands above would else be drawn over.
+    let apart = ui.scope(|ui| {
+        // A popup would otherwise be no higher than in the frame before.
+        ui.set_max_height(most);
+        ScrollArea::vertical().max_height(most).show(ui, add).inner
+    });
+    apart.inner
 }
 
 /// The word with a capital.

@@ -39,8 +39,11 @@ pub struct Layout {
 pub const SCALES: std::ops::RangeInclusive<u16> = 50..=300;
 /// Widths of a side in points.
 pub const WIDTHS: std::ops::RangeInclusive<u16> = 200..=900;
-/// Usual widths of the sides: what their widest rows need, or they would grow once these are shown.
+/// Usual widths of the sides: what their widest rows need.
 const USUAL_WIDTHS: [u16; 2] = [276, 380];
+/// What the view keeps of the window's width, in points; in a small window, [`VIEW_SHARE`] of it.
+const VIEW: f32 = 240.0;
+const VIEW_SHARE: f32 = 0.4;
 
 impl Default for Layout {
     fn default() -> Self {
@@ -88,6 +91,44 @@ impl Layout {
     /// The width of a side in points.
     pub fn width(&self, side: WindowSide) -> u16 {
         self.widths[side as usize]
+    }
+
+    /// Points that a side keeps beside another one, unless it is to be narrower anyway.
+    pub const NARROW: f32 = 240.0;
+    /// Width of a side that is folded because there is no room for both, in points.
+    pub const STRIP: f32 = 26.0;
+
+    /// Points for the sides in a window that is `window` points wide; the view has the rest.
+    pub fn room(window: f32) -> f32 {
+        window - VIEW.min(VIEW_SHARE * window)
+    }
+
+    /// How wide the sides are that want to be as wide as `wished`, if they have anything to show.
+    ///
+    /// Where both together are too wide, each gives of what it has above [`Self::NARROW`]. `None` is a
+    /// side that has nothing to show, or one to fold to a strip: where there is no room for both, only
+    /// the one that is `in_use` stays. What is remembered does not change.
+    pub fn fit(wished: [Option<f32>; 2], window: f32, in_use: WindowSide) -> [Option<f32>; 2] {
+        let room = Self::room(window);
+        let [Some(left), Some(right)] = wished else {
+            return wished.map(|wish| wish.map(|width| width.min(room)));
+        };
+        let over = left + right - room;
+        if over <= 0.0 {
+            return wished;
+        }
+        let spare = [left, right].map(|wish| (wish - Self::NARROW).max(0.0));
+        let both = spare[0] + spare[1];
+        if over <= both {
+            let share = over / both;
+            let give = |wish: f32, spare: f32| Some((wish - share * spare).floor());
+            return [give(left, spare[0]), give(right, spare[1])];
+        }
+        let alone = room - Self::STRIP;
+        match in_use {
+            WindowSide::Left => [Some(left.min(alone)), None],
+            WindowSide::Right => [None, Some(right.min(alone))],
+        }
     }
 
     /// Puts a panel elsewhere.
@@ -152,6 +193,34 @@ impl Layout {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sides_leave_room_for_the_view() {
+        use WindowSide::{Left, Right};
+        let usual = USUAL_WIDTHS.map(|width| Some(f32::from(width)));
+        assert_eq!(Layout::fit(usual, 1280.0, Left), usual, "as they are remembered");
+        for in_use in WindowSide::ALL {
+            for tens in 30..200 {
+                let window = 10.0 * tens as f32;
+                for wished in [usual, [Some(900.0), Some(900.0)], [Some(900.0), None]] {
+                    let fitted = Layout::fit(wished, window, in_use);
+                    let sum: f32 = fitted.into_iter().flatten().sum();
+                    let view = window - sum;
+                    assert!(view >= (0.4 * window).min(240.0) - 1e-3, "{window}: {fitted:?}");
+                    assert!(fitted.into_iter().flatten().all(|w| w > 0.0), "{window}: {fitted:?}");
+                }
+            }
+        }
+        // A window of 1280 pixels at 150 and at 200 per cent.
+        let [Some(left), Some(right)] = Layout::fit(usual, 1280.0 / 1.5, Left) else {
+            panic!("there is room for both")
+        };
+        assert!(left >= Layout::NARROW && right >= Layout::NARROW, "both serve: {left}, {right}");
+        assert_eq!(Layout::fit(usual, 640.0, Left), [Some(276.0), None], "the one in use");
+        let [None, Some(right)] = Layout::fit(usual, 640.0, Right) else { panic!("the other one") };
+        assert!(right > 350.0, "all the room there is, not {right}");
+        assert_eq!(Layout::fit([None, None], 640.0, Right), [None, None], "nothing to show");
+    }
 
     #[test]
     fn panels_are_put_elsewhere_and_back() {

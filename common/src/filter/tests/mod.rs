@@ -13,7 +13,7 @@ use crate::{Event, PathHeader, SceneFrame, VertexKind, VertexRecord};
 fn scene() -> FilterScene {
     let strings = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
     FilterScene {
-        frame: SceneFrame { centre: DVec3::new(1.0, 2.0, 3.0), scale: 4.0 },
+        frame: SceneFrame { centre: DVec3::new(1.0, 2.0, 3.0), scale: 4.0, light: 1.0 },
         materials: strings(&["wall", "glass", "lamp", "wall", "spot", "sky"]),
         background: Some(5),
         strategies: strings(&["bidirectional", "lens", "lens subpath"]),

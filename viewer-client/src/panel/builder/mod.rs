@@ -4,13 +4,16 @@ mod add;
 mod leaf;
 
 use common::{Filter, VertexTest};
-use egui::{Button, ComboBox, Label, RichText, Ui};
+use egui::{Align, Button, ComboBox, Label, Layout, RichText, Ui, vec2};
 
 use super::filter::complete::Vocabulary;
 use super::filter::vocabulary;
 use crate::command::FilterCommand;
 use crate::tree::negated;
 use crate::world::World;
+
+/// Width of the menu at the end of a line and of the gap before it, in points.
+const MORE_WIDTH: f32 = 36.0;
 
 /// What conditions are about: names, and places.
 #[derive(Debug)]
@@ -134,25 +137,40 @@ impl LineDeed {
 /// A condition.
 fn line(ui: &mut Ui, filter: &mut Filter, negative: bool, context: &Context) -> LineDeed {
     let mut done = LineDeed { deed: Deed::Nothing, turned: false, more: None };
-    ui.horizontal_wrapped(|ui| {
-        let tip = "Take this condition away";
-        if ui.small_button("×").on_hover_text(tip).clicked() {
-            done.deed = Deed::Removed;
-        }
-        let not = Button::selectable(negative, "not").small();
-        done.turned = ui.add(not).on_hover_text("Want the opposite").clicked();
-        match &mut *filter {
-            Filter::Leaf(leaf) => {
-                let changed = leaf::edit(ui, leaf, context);
-                done.deed = done.deed.or(Deed::changed(changed));
-            }
-            other => {
-                fixed(ui, other.to_string());
-            }
-        }
+    let row = vec2(ui.available_width(), ui.spacing().interact_size.y);
+    ui.allocate_ui_with_layout(row, Layout::left_to_right(Align::Min), |ui| {
+        // The parts wrap beside the menu, which stays at the end of the first line.
+        let width = (row.x - MORE_WIDTH).max(0.0);
+        ui.vertical(|ui| {
+            ui.set_width(width);
+            ui.horizontal_wrapped(|ui| parts(ui, (&mut *filter, negative), context, &mut done));
+        });
         done.more = more(ui, filter, context);
     });
     done
+}
+
+/// What can be chosen of a condition.
+fn parts(
+    ui: &mut Ui,
+    (filter, negative): (&mut Filter, bool),
+    context: &Context,
+    done: &mut LineDeed,
+) {
+    if ui.small_button("×").on_hover_text("Take this condition away").clicked() {
+        done.deed = Deed::Removed;
+    }
+    let not = Button::selectable(negative, "not").small();
+    done.turned = ui.add(not).on_hover_text("Want the opposite").clicked();
+    match filter {
+        Filter::Leaf(leaf) => {
+            let changed = leaf::edit(ui, leaf, context);
+            done.deed = done.deed.or(Deed::changed(changed));
+        }
+        other => {
+            fixed(ui, other.to_string());
+        }
+    }
 }
 
 /// What else can be done with a condition: another one beside it, and whether either is enough.

@@ -129,3 +129,25 @@ fn text_and_tree_are_the_same_filter() {
     let same = click(&mut harness, "on material wall");
     assert_eq!(same, "any (is diffuse and on material \"wall\")", "at the same vertex");
 }
+
+#[test]
+fn the_menu_of_a_condition_stays_at_the_end_of_its_line() {
+    let width = 268.0;
+    for filter in ["edges >= 3", "any in sphere(0, 1, 0, 0.5)", "any through box(0, 0, 0, 1, 1, 1)"]
+    {
+        let mut harness = builder(filter);
+        harness.set_size(vec2(width, 600.0));
+        harness.run_steps(3);
+        let first = harness.get_by_label("×").rect();
+        let menu = harness.get_by_label("…").rect();
+        let off = (menu.center().y - first.center().y).abs();
+        assert!(off < 6.0, "{filter}: {off} points below the line");
+        // The harness leaves eight points round everything.
+        let end = width - 8.0;
+        assert!(
+            (end - 24.0..=end).contains(&menu.right()),
+            "{filter}: it ends at {}",
+            menu.right()
+        );
+    }
+}

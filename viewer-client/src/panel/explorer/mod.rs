@@ -27,8 +27,8 @@ const AROUND_NAME: f32 = 36.0;
 /// The controls of the explorer.
 #[derive(Debug)]
 pub(super) struct ExplorerPanel {
-    /// Steps a second that play begins with.
-    rate: f32,
+    /// Steps a second that were asked for while it rests.
+    rate: Option<f32>,
     /// Proposals of a fan.
     fan: u32,
     /// The strategy of fans and skips.
@@ -38,7 +38,7 @@ pub(super) struct ExplorerPanel {
 
 impl Default for ExplorerPanel {
     fn default() -> Self {
-        Self { rate: 2.0, fan: 32, strategy: 0, film: film::ExplorerFilm::default() }
+        Self { rate: None, fan: 32, strategy: 0, film: film::ExplorerFilm::default() }
     }
 }
 
@@ -135,7 +135,7 @@ impl ExplorerPanel {
         ui.horizontal(|ui| {
             if state.pace == Pace::Paused {
                 if ui.button("Play").on_hover_text("Step by itself (K)").clicked() {
-                    order(ExplorerCommand::Play(self.rate));
+                    order(ExplorerCommand::Play(self.rate.unwrap_or(state.rate)));
                 }
             } else if ui.button("Pause").on_hover_text("Stand still (K)").clicked() {
                 order(ExplorerCommand::Pause);
@@ -149,12 +149,12 @@ impl ExplorerPanel {
             }
         });
         if state.pace == Pace::Playing {
-            self.rate = state.rate;
+            self.rate = None;
         }
         let tip = "Steps a second while it plays";
         let scale = Scale::logarithmic(SLOWEST..=MAX_RATE, 1).suffix(" /s");
-        if let Some(rate) = slider(ui, "Pace", tip, self.rate, scale) {
-            self.rate = rate;
+        if let Some(rate) = slider(ui, "Pace", tip, self.rate.unwrap_or(state.rate), scale) {
+            self.rate = Some(rate);
             if state.pace == Pace::Playing {
                 order(ExplorerCommand::Play(rate));
             }
@@ -233,8 +233,8 @@ fn tally(ui: &mut Ui, state: &ExplorerState, world: &World<'_>) {
         steps => format!(", {} missed", format::count(steps as f64)),
     };
     let text = format!(
-        "{} steps since the seed, {} accepted ({share}){missed}",
-        format::count(state.steps as f64),
+        "{} since the seed, {} accepted ({share}){missed}",
+        format::steps(state.steps),
         format::count(state.accepted as f64),
     );
     ui.label(RichText::new(text).weak());

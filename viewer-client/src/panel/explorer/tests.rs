@@ -23,6 +23,7 @@ fn driven() -> Stage {
     let steering = &mut stage.status.steering;
     steering.take(Notice::Presence(Presence { viewers: vec![me] }));
     steering.explorer.current = Some(PathId::default());
+    steering.explorer.rate = 2.0;
     let vertices = (0..4).map(vertex).collect();
     steering.focus.take_path(FocusPath { vertices, next: 1, ..FocusPath::default() });
     stage

@@ -78,9 +78,20 @@ pub(super) fn complete(text: &str, cursor: usize, scene: &Vocabulary) -> Complet
             vec![choice(")", "that is all"), choice(",", "and another one")]
         }
         Expected::Name(_) | Expected::Strategy | Expected::Strategies => names(expected, scene),
+        Expected::Operator if !is_open(done) => {
+            let mut all = words(expected);
+            all.retain(|choice| choice.text != ")");
+            all
+        }
         other => words(other),
     };
     fitting(start..before.len(), part, choices)
+}
+
+/// Whether a parenthesis waits to be closed.
+fn is_open(tokens: &[&str]) -> bool {
+    let count = |sign: &str| tokens.iter().filter(|token| **token == sign).count();
+    count("(") > count(")")
 }
 
 /// The choices that go on with `part`, unless it is all of the only one.

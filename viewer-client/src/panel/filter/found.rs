@@ -43,13 +43,15 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) 
 /// How many of how many paths.
 pub(crate) fn text(world: &World<'_>, counts: &FilterCounts) -> String {
     let shown = (world.settings.cloud.shown as usize).min(world.store.matched());
-    let count = |n: u64| format::count(n as f64);
-    format!(
-        "{} shown of {} matching of {} seen",
-        format::count(shown as f64),
-        count(counts.matched),
-        count(counts.seen),
-    )
+    let [shown_text, matched, seen] =
+        [shown as u64, counts.matched, counts.seen].map(|n| format::count(n as f64));
+    if shown as u64 > counts.matched {
+        // Some came before the filter, or after the daemon counted last.
+        return format!(
+            "{shown_text} shown; counted since the filter: {matched} matching of {seen} seen"
+        );
+    }
+    format!("{shown_text} shown of {matched} matching of {seen} seen")
 }
 
 /// The share of the energy, with its error.

@@ -1,6 +1,6 @@
 //! Comparing with a file, saving to one, and sending to tev.
 
-use egui::{CollapsingHeader, Grid, RichText, TextEdit, Ui};
+use egui::{Align2, CollapsingHeader, Grid, RichText, TextEdit, Ui};
 
 use crate::command::{Command, ImageCommand, Layer};
 use crate::format;
@@ -136,7 +136,8 @@ impl Line {
     fn show(&self, ui: &mut Ui, text: &mut String, tip: &str) -> bool {
         ui.horizontal(|ui| {
             let width = (ui.available_width() - 74.0).max(60.0);
-            let edit = ui.add(TextEdit::singleline(text).hint_text(self.hint).desired_width(width));
+            let edit = TextEdit::singleline(text).align(Align2::LEFT_CENTER);
+            let edit = ui.add(edit.hint_text(self.hint).desired_width(width));
             let entered = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             let enabled = !text.trim().is_empty();
             let button = ui.add_enabled(enabled, egui::Button::new(self.button));

@@ -19,11 +19,29 @@ const WHEEL: f32 = 240.0;
 /// Closest zoom, in screen points a pixel of the film.
 const CLOSEST: f32 = 64.0;
 
-/// A drag under way.
+/// Seconds without the wheel after which a turn of it is another gesture.
+const PAUSE: f64 = 0.5;
+/// A cursor that moves further begins another gesture, in points.
+const STILL: f32 = 4.0;
+
+/// What is under way from frame to frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FrameState {
     /// The pixel where a rectangle began.
     corner: Option<[usize; 2]>,
+    /// The newest turn of the wheel.
+    turn: Option<Turn>,
+}
+
+/// Turns of the wheel that belong together.
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    /// Where the cursor was when they began.
+    place: Pos2,
+    /// When the last one was, in seconds.
+    last: f64,
+    /// They began on the image.
+    is_ours: bool,
 }
 
 /// How film pixels lie on the screen.
@@ -113,7 +131,8 @@ impl FrameState {
         let place = Rect::from_min_size(placement.origin, film * placement.scale);
         painter.image(texture, place, whole, Color32::WHITE);
         let hovered = response.hover_pos().and_then(|p| placement.pixel(p));
-        wheel(ui, &response, placement, commands);
+        let is_ours = self.takes_wheel(ui, &response);
+        wheel(ui, &response, (placement, is_ours), commands);
         pan(&response, placement, commands);
         self.choose(&response, placement, world, commands);
         let chosen = match (self.corner, response.interact_pointer_pos()) {
@@ -131,6 +150,24 @@ impl FrameState {
             hover::point(ui.ctx(), Pointed::Film([point.x, point.y]));
         }
         hovered
+    }
+
+    /// True where the wheel comes closer. Who scrolls the side goes on with that when the image comes
+    /// under a cursor that rests.
+    fn takes_wheel(&mut self, ui: &Ui, response: &Response) -> bool {
+        let is_over = response.hover_pos().is_some();
+        let (scroll, time) = ui.input(|i| (i.smooth_scroll_delta, i.time));
+        if scroll == Vec2::ZERO {
+            return is_over;
+        }
+        let Some(place) = ui.input(|i| i.pointer.latest_pos()) else { return false };
+        let goes_on = |turn: &Turn| time - turn.last < PAUSE && turn.place.distance(place) < STILL;
+        let turn = match self.turn.filter(goes_on) {
+            Some(turn) => Turn { last: time, ..turn },
+            None => Turn { place, last: time, is_ours: is_over },
+        };
+        self.turn = Some(turn);
+        turn.is_ours && is_over
     }
 
     /// A click wants the paths to a pixel, a drag those to a rectangle.
@@ -165,15 +202,23 @@ impl FrameState {
     }
 }
 
-fn wheel(ui: &Ui, response: &Response, placement: Placement, commands: &mut Vec<Command>) {
+fn wheel(
+    ui: &Ui,
+    response: &Response,
+    (placement, is_ours): (Placement, bool),
+    commands: &mut Vec<Command>,
+) {
     let Some(place) = response.hover_pos() else { return };
     let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta.y, i.zoom_delta()));
+    let scroll = if is_ours { scroll } else { 0.0 };
     let factor = (scroll / WHEEL).exp() * pinch;
     if factor == 1.0 {
         return;
     }
-    // The wheel is used up, so that the panel stays where it is.
-    ui.input_mut(|i| i.smooth_scroll_delta = Vec2::ZERO);
+    if is_ours {
+        // The wheel is used up, so that the panel stays where it is.
+        ui.input_mut(|i| i.smooth_scroll_delta = Vec2::ZERO);
+    }
     let scale = placement.scale * factor;
     if scale <= placement.fit {
         commands.push(Command::Image(ImageCommand::Fit));

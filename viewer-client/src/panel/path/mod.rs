@@ -1,23 +1,31 @@
 //! Everything that is known of the selected path.
 
+mod align;
+mod file;
+mod light;
 mod splits;
 mod vertices;
 
 use std::time::Duration;
 
-use common::{ExplorerCommand, Order, Seed};
-use egui::{Color32, Label, RichText, Sense, Ui, vec2};
+use common::{ExplorerCommand, Order, PathHeader, Seed};
+use egui::{Button, Color32, Label, RichText, Sense, Ui, vec2};
 
+use self::file::UNKNOWN;
+use self::vertices::Described;
 use super::Panel;
 use super::widgets::{dot, empty_state, row};
 use crate::command::{Command, PathCommand, VertexStep};
+use crate::dump::Outcome;
 use crate::format;
-use crate::selection::{Detail, Names, Selection};
+use crate::selection::Detail;
 use crate::theme;
 use crate::world::World;
 
 /// A daemon that has not answered for so long does not know the question.
 const PATIENCE: Duration = Duration::from_secs(5);
+/// Why a file of paths has a dash where a daemon has a number.
+const NOT_IN_FILE: &str = "A file of paths does not tell it";
 
 /// The selected path.
 #[derive(Debug, Default)]
@@ -36,20 +44,22 @@ impl Panel for PathPanel {
             return;
         };
         let names = world.names();
-        headline(ui, selection, &names);
-        figures(ui, world, selection, &names);
+        let path = Described { selection, names: &names, record: file::record(world, selection) };
+        headline(ui, world, path);
+        figures(ui, world, path);
         ui.add_space(4.0);
-        buttons(ui, selection, &names, commands);
+        buttons(ui, world, path, commands);
         ui.add_space(4.0);
-        vertices::show(ui, &mut self.columns, (selection, &names), commands);
+        vertices::show(ui, &mut self.columns, path, commands);
         match selection.numbers() {
-            Some(detail) => splits::show(ui, selection, detail),
-            None => without_numbers(ui, world, selection),
+            Some(detail) => splits::show(ui, path, detail),
+            None => without_numbers(ui, world, path),
         }
     }
 }
 
-fn headline(ui: &mut Ui, selection: &Selection, names: &Names<'_>) {
+fn headline(ui: &mut Ui, world: &World<'_>, path: Described<'_>) {
+    let Described { selection, names, record } = path;
     ui.horizontal(|ui| {
         let class = RichText::new(selection.class()).monospace().strong().size(16.0);
         ui.add(Label::new(class))
@@ -60,35 +70,60 @@ fn headline(ui: &mut Ui, selection: &Selection, names: &Names<'_>) {
             ui.label(text).on_hover_text("Click again in the view for the next one there");
         }
     });
+    let is_silent = record.is_none_or(|record| record.outcome == Outcome::Recorded);
+    if world.playback.is_some() && is_silent {
+        let line = record.map_or_else(|| UNKNOWN.to_owned(), |record| record.line.to_string());
+        let text = format!("Record of line {line}");
+        let tip = "The file does not tell which strategy, chain and step made it";
+        ui.label(RichText::new(text).weak()).on_hover_text(tip);
+        return;
+    }
     ui.horizontal(|ui| {
-        let strategy = usize::from(selection.header.strategy.0);
-        dot(ui, theme::strategy_color(strategy));
-        ui.label(names.strategy(&selection.header))
-            .on_hover_text("The strategy whose proposal it was");
-        let id = selection.header.id;
+        let header = &selection.header;
+        dot(ui, theme::strategy_color(usize::from(header.strategy.0)));
+        // A step of a file need not name its mutation.
+        let is_seed = record.is_none_or(|record| record.outcome == Outcome::Seed);
+        let is_nameless = header.strategy == PathHeader::NO_STRATEGY && !is_seed;
+        let strategy = if is_nameless { UNKNOWN } else { names.strategy(header) };
+        ui.label(strategy).on_hover_text("The strategy whose proposal it was");
+        let id = header.id;
         let text = format!("chain {}, step {}", id.chain.0, format::count(id.step as f64));
         ui.label(RichText::new(text).weak()).on_hover_text(format!("Path {id}"));
     });
 }
 
-fn figures(ui: &mut Ui, world: &World<'_>, selection: &Selection, names: &Names<'_>) {
+fn figures(ui: &mut Ui, world: &World<'_>, path: Described<'_>) {
+    let Described { selection, names, record } = path;
     let h = &selection.header;
+    let in_file = world.playback.is_some();
     let length: f64 =
         (1..selection.vertices.len()).filter_map(|i| selection.edge_length(i, names)).sum();
     let mono = |text: String| RichText::new(text).monospace();
-    row(ui, "Luminance", "The path's value to a bidirectional path tracer, 1 / S(x)", |ui| {
-        ui.label(mono(format!("{:.4e}", h.luminance)))
-    });
-    row(ui, "Colour", "Red, green, blue at unit luminance: what every splat of it carries", |ui| {
-        swatch(ui, h.rgb);
-        let [r, g, b] = h.rgb;
-        ui.label(mono(format!("{r:.3}  {g:.3}  {b:.3}")))
-    });
-    let [width, height] = world.film.size();
+    let (value, tip) = luminance(path, in_file);
+    row(ui, "Luminance", tip, |ui| ui.label(mono(value)));
+    if in_file {
+        row(ui, "Colour", NOT_IN_FILE, |ui| ui.label(mono(UNKNOWN.to_owned())));
+    } else {
+        let tip = "Red, green, blue at unit luminance: what every splat of it carries";
+        row(ui, "Colour", tip, |ui| {
+            swatch(ui, h.rgb);
+            let [r, g, b] = h.rgb;
+            ui.label(mono(format!("{r:.3}  {g:.3}  {b:.3}")))
+        });
+    }
+    let [width, height] = match world.playback.map(|playback| playback.stage().camera) {
+        Some(camera) => [camera.width as usize, camera.height as usize],
+        None => world.film.size(),
+    };
     let pixel = |share: f32, side: usize| (share * side as f32) as usize;
     let pixels = match (width, height) {
         (0, _) | (_, 0) => String::new(),
         _ => format!("  pixel {}, {}", pixel(h.film[0], width), pixel(h.film[1], height)),
+    };
+    let (acceptance, stay) = if in_file {
+        (file::acceptance(record), file::stay(record))
+    } else {
+        (format!("a = {:.4}", h.acceptance), format::steps(u64::from(h.dwell)))
     };
     let lines = [
         (
@@ -96,17 +131,26 @@ fn figures(ui: &mut Ui, world: &World<'_>, selection: &Selection, names: &Names<
             format!("{:.4}  {:.4}{pixels}", h.film[0], h.film[1]),
             "Shares of width and height, from the upper left corner",
         ),
-        ("Accepted at", format!("a = {:.4}", h.acceptance), "Of the proposal that made it"),
-        (
-            "Stayed",
-            format::steps(u64::from(h.dwell)),
-            "Steps that the chain stayed here while shown",
-        ),
+        ("Accepted at", acceptance, "Acceptance probability of the proposal that made it"),
+        ("Stayed", stay, "Steps that the chain stayed here while shown"),
         ("Length", format!("{length:.4}"), "All edges together, in the units of the scene file"),
     ];
     for (label, value, tip) in lines {
         row(ui, label, tip, |ui| ui.label(mono(value)));
     }
+}
+
+/// The path's value with what it measures.
+fn luminance(path: Described<'_>, in_file: bool) -> (String, &'static str) {
+    if in_file {
+        return (UNKNOWN.to_owned(), NOT_IN_FILE);
+    }
+    (
+        format::exact(path.names.luminance(&path.selection.header)),
+        "What the path counts as one sample of a bidirectional path tracer, 1 / S(x). In the unit of \
+         the image: the mean over all samples is b, the image's mean luminance. It is not the value \
+         of its pixel, which many paths make together",
+    )
 }
 
 /// The colour, as bright as it fits.
@@ -117,7 +161,8 @@ fn swatch(ui: &mut Ui, rgb: [f32; 3]) {
     ui.painter().rect_filled(rect, 2.0, Color32::from(egui::Rgba::from_rgb(r, g, b)));
 }
 
-fn buttons(ui: &mut Ui, selection: &Selection, names: &Names<'_>, commands: &mut Vec<Command>) {
+fn buttons(ui: &mut Ui, world: &World<'_>, path: Described<'_>, commands: &mut Vec<Command>) {
+    let Described { selection, names, .. } = path;
     ui.horizontal_wrapped(|ui| {
         let mut step = |ui: &mut Ui, label: &str, tip: &str, step: VertexStep| {
             if ui.button(label).on_hover_text(tip).clicked() {
@@ -126,7 +171,14 @@ fn buttons(ui: &mut Ui, selection: &Selection, names: &Names<'_>, commands: &mut
         };
         step(ui, "Vertex before", "Towards the light (Shift+V)", VertexStep::Previous);
         step(ui, "Vertex after", "Towards the camera (V)", VertexStep::Next);
-        if ui.button("Explore").on_hover_text("Perturb it step by step (Enter)").clicked() {
+        let explore = ui
+            .add_enabled(world.playback.is_none(), Button::new("Explore"))
+            .on_hover_text("Perturb it step by step (Enter)")
+            .on_disabled_hover_text(
+                "A file of paths has no daemon whose chain could explore; open the scene itself \
+                 with --scene",
+            );
+        if explore.clicked() {
             let seed = ExplorerCommand::Seed(Seed::Path(selection.header.id));
             commands.push(Command::Order(Order::Explorer(seed)));
         }
@@ -140,7 +192,8 @@ fn buttons(ui: &mut Ui, selection: &Selection, names: &Names<'_>, commands: &mut
 }
 
 /// Why densities, throughputs and geometry terms are not shown.
-fn without_numbers(ui: &mut Ui, world: &World<'_>, selection: &Selection) {
+fn without_numbers(ui: &mut Ui, world: &World<'_>, path: Described<'_>) {
+    let selection = path.selection;
     let text = match &selection.detail {
         Detail::Known(_) => return,
         Detail::Unasked => "Not asked for yet: select the path again.".to_owned(),
@@ -156,7 +209,11 @@ fn without_numbers(ui: &mut Ui, world: &World<'_>, selection: &Selection) {
         Detail::Missing(why) => format!("Not known: {why}"),
     };
     ui.add_space(6.0);
-    let title = "Densities, throughputs, geometry terms, weights of the splits";
+    let title = if path.record.is_some_and(file::tells_numbers) {
+        "Throughputs, geometry terms, weights of the splits"
+    } else {
+        "Densities, throughputs, geometry terms, weights of the splits"
+    };
     ui.label(RichText::new(title).small().weak());
     ui.label(text);
 }

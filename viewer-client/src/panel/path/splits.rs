@@ -3,6 +3,7 @@
 use common::PathDetail;
 use egui::{Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
+use super::vertices::Described;
 use crate::format;
 use crate::panel::hover::{self, Pointed};
 use crate::selection::Selection;
@@ -15,7 +16,7 @@ const NUMBER: f32 = 58.0;
 const MOST_LETTERS: usize = 9;
 
 /// Shows a bar a split, as long as its weight by the balance heuristic.
-pub(super) fn show(ui: &mut Ui, selection: &Selection, detail: &PathDetail) {
+pub(super) fn show(ui: &mut Ui, path: Described<'_>, detail: &PathDetail) {
     ui.add_space(8.0);
     let title = RichText::new("Ways to make it, by weight").small().weak();
     ui.label(title).on_hover_text(
@@ -24,7 +25,7 @@ pub(super) fn show(ui: &mut Ui, selection: &Selection, detail: &PathDetail) {
          the path by itself.",
     );
     for light in 0..detail.reciprocals.len() {
-        bar(ui, selection, detail, light);
+        bar(ui, path, detail, light);
     }
 }
 
@@ -37,12 +38,12 @@ fn parted(selection: &Selection, light: usize) -> String {
     if a.is_empty() { format!("| {}", side(b)) } else { format!("{} | {}", side(a), side(b)) }
 }
 
-fn bar(ui: &mut Ui, selection: &Selection, detail: &PathDetail, light: usize) {
+fn bar(ui: &mut Ui, path: Described<'_>, detail: &PathDetail, light: usize) {
     let share = detail.share(light);
     let possible = detail.reciprocals.get(light).is_some_and(|&reciprocal| reciprocal > 0.0);
     let size = vec2(ui.available_width(), HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    let class = parted(selection, light);
+    let class = parted(path.selection, light);
     let number = if possible { format::percent(share, 1.0) } else { "cannot".to_owned() };
     let words = format!("{class}  {number}");
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &words));
@@ -84,7 +85,9 @@ fn explain(ui: &mut Ui, detail: &PathDetail, light: usize) {
     });
     let Some(&reciprocal) = detail.reciprocals.get(light) else { return };
     if reciprocal > 0.0 {
-        ui.label(RichText::new(format!("C      {:.6e}", 1.0 / reciprocal)).monospace());
+        let counts = format::exact(1.0 / reciprocal);
+        let text = format!("C      {counts} in luminance of the image");
+        ui.label(RichText::new(text).monospace());
         ui.label(RichText::new(format!("weight {:.6}", detail.share(light))).monospace());
     } else {
         ui.label("It cannot make the path: an end of the connection is specular, or has no size");

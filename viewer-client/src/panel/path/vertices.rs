@@ -1,10 +1,12 @@
 //! The vertices of the selected path: a table of all, and everything of one.
 
-use common::{PathDetail, VertexKind, VertexRecord, decode_normal};
-use egui::{Button, Grid, Label, Response, RichText, Sense, Ui};
+use common::{VertexKind, VertexRecord, decode_normal};
+use egui::{Button, Grid, Label, Response, RichText, ScrollArea, Sense, Ui};
 
+use super::align::{aligned, triples};
+use super::{file, light};
 use crate::command::{Command, PathCommand, VertexStep};
-use crate::format;
+use crate::dump::Act;
 use crate::panel::hover::{self, Pointed};
 use crate::panel::widgets::row;
 use crate::selection::{Names, Selection};
@@ -22,47 +24,65 @@ pub(super) enum Columns {
     Light,
 }
 
+/// A path with what its vertices are called.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Described<'a> {
+    pub(super) selection: &'a Selection,
+    pub(super) names: &'a Names<'a>,
+    /// Its record, where it is one of a file of paths.
+    pub(super) record: Option<&'a Act>,
+}
+
+/// A label, its value, and what that is.
+pub(super) type Line = (&'static str, String, &'static str);
+
 /// Shows the table, and all of the vertex that is looked at; that of the others is in their tooltips.
 pub(super) fn show(
     ui: &mut Ui,
     columns: &mut Columns,
-    (selection, names): (&Selection, &Names<'_>),
+    path: Described<'_>,
     commands: &mut Vec<Command>,
 ) {
-    let detail = selection.numbers();
+    let detail = path.selection.numbers();
+    let record = path.record.filter(|record| file::tells_numbers(record));
     ui.horizontal(|ui| {
         let tip = "What happens at each vertex, on what, and where";
         ui.selectable_value(columns, Columns::Places, "Places").on_hover_text(tip);
-        let tip = "Throughputs, densities and geometry terms, as the daemon knows them";
-        ui.add_enabled_ui(detail.is_some(), |ui| {
-            ui.selectable_value(columns, Columns::Light, "Light").on_hover_text(tip);
+        let tip = if record.is_some() {
+            "Densities and weights, as the file tells them"
+        } else {
+            "Throughputs, densities and geometry terms, as the daemon knows them"
+        };
+        ui.add_enabled_ui(detail.is_some() || record.is_some(), |ui| {
+            ui.selectable_value(columns, Columns::Light, "Light")
+                .on_hover_text(tip)
+                .on_disabled_hover_text("What is below says why there are none");
         });
     });
-    match (*columns, detail) {
-        (Columns::Light, Some(detail)) => light(ui, (selection, names), detail, commands),
-        _ => places(ui, (selection, names), commands),
-    }
-    if let Some(index) = selection.vertex {
+    // What is too wide for the side scrolls: it would widen the side with every frame.
+    ScrollArea::horizontal().id_salt("vertices").show(ui, |ui| match (*columns, detail, record) {
+        (Columns::Light, Some(detail), _) => light::table(ui, path, detail, commands),
+        (Columns::Light, None, Some(record)) => file::table(ui, path, record, commands),
+        _ => places(ui, path, commands),
+    });
+    if let Some(index) = path.selection.vertex {
         ui.add_space(6.0);
-        card(ui, selection, index, names);
+        card(ui, path, index);
     }
 }
 
-fn title(ui: &mut Ui, text: &str, tip: &str) {
+/// The name of a column, with what it means.
+pub(super) fn title(ui: &mut Ui, text: &str, tip: &str) {
     let title = Label::new(RichText::new(text).small().weak()).selectable(false);
     ui.add(title.sense(Sense::hover())).on_hover_text(tip);
 }
 
-/// A path with what its vertices are called.
-type Described<'a> = (&'a Selection, &'a Names<'a>);
-
 /// The name of a vertex: a click looks at it, and pointing at it marks it in the view.
 fn name(ui: &mut Ui, path: Described<'_>, i: usize, commands: &mut Vec<Command>) {
-    let (selection, _) = path;
-    let Some(vertex) = selection.vertices.get(i) else { return };
+    let Some(vertex) = path.selection.vertices.get(i) else { return };
     let name = RichText::new(format!("{} x{i}", vertex.kind.letter())).monospace().strong();
     let marked = hover::pointed(ui.ctx()) == Some(Pointed::Vertex(i));
-    let button = Button::new(name).frame(true).selected(selection.vertex == Some(i) || marked);
+    let button = Button::new(name).frame(true).selected(path.selection.vertex == Some(i) || marked);
     let response = ui.add(button);
     if response.clicked() {
         let step = VertexStep::To(u8::try_from(i).unwrap_or(u8::MAX));
@@ -72,28 +92,47 @@ fn name(ui: &mut Ui, path: Described<'_>, i: usize, commands: &mut Vec<Command>)
 }
 
 /// Marks a vertex in the view while something of it is pointed at, and tells all of it.
-fn point(response: Response, (selection, names): Described<'_>, i: usize) {
+fn point(response: Response, path: Described<'_>, i: usize) {
     if response.contains_pointer() {
         hover::point(&response.ctx, Pointed::Vertex(i));
     }
-    response.on_hover_ui(|ui| card(ui, selection, i, names));
+    response.on_hover_ui(|ui| card(ui, path, i));
+}
+
+/// A row a vertex, a column a list of numbers; their points stand below each other.
+pub(super) fn numbers(
+    ui: &mut Ui,
+    path: Described<'_>,
+    columns: &[Vec<String>],
+    commands: &mut Vec<Command>,
+) {
+    let columns: Vec<Vec<String>> = columns.iter().map(|column| aligned(column)).collect();
+    for i in 0..path.selection.vertices.len() {
+        name(ui, path, i, commands);
+        for column in &columns {
+            let text = column.get(i).map_or("", String::as_str);
+            point(ui.label(RichText::new(text).monospace().size(11.0)), path, i);
+        }
+        ui.end_row();
+    }
 }
 
 fn places(ui: &mut Ui, path: Described<'_>, commands: &mut Vec<Command>) {
-    let (selection, names) = path;
+    let Described { selection, names, .. } = path;
+    let position = |vertex: &VertexRecord| names.world(vertex.position).to_array();
+    let rows: Vec<[f64; 3]> = selection.vertices.iter().map(position).collect();
+    let positions = triples(&rows, 3);
     Grid::new("places").num_columns(4).striped(true).spacing([10.0, 3.0]).show(ui, |ui| {
         title(ui, "", "");
         title(ui, "event", "What scatters the light there");
         title(ui, "on", "The object, or else the material");
-        title(ui, "position", "In the units of the scene file");
+        title(ui, "position", "x, y and z in the units of the scene file");
         ui.end_row();
-        for (i, vertex) in selection.vertices.iter().enumerate() {
+        for (i, (vertex, text)) in selection.vertices.iter().zip(positions).enumerate() {
             name(ui, path, i, commands);
             point(ui.label(vertex.event.name()), path, i);
             let on = Label::new(shortened(on(vertex, names))).sense(Sense::hover());
             point(ui.add(on), path, i);
-            let p = names.world(vertex.position);
-            let text = format!("{:.3} {:.3} {:.3}", p.x, p.y, p.z);
             point(ui.label(RichText::new(text).monospace().size(11.0)), path, i);
             ui.end_row();
         }
@@ -117,47 +156,19 @@ fn on<'a>(vertex: &VertexRecord, names: &'a Names<'_>) -> &'a str {
     }
 }
 
-fn light(ui: &mut Ui, path: Described<'_>, detail: &PathDetail, commands: &mut Vec<Command>) {
-    Grid::new("light").num_columns(6).striped(true).spacing([9.0, 3.0]).show(ui, |ui| {
-        title(ui, "", "");
-        title(ui, "β light", "Luminance that a walk from the light carries when it has come here");
-        title(ui, "β eye", "Luminance that a walk from the eye carries when it has come here");
-        title(ui, "p light", "Density of making the vertex from the light side");
-        title(ui, "p eye", "Density of making the vertex from the eye side");
-        title(ui, "G", "Geometry term of the edge to the next vertex, in scene units");
-        ui.end_row();
-        for (i, vertex) in detail.vertices.iter().enumerate() {
-            name(ui, path, i, commands);
-            let walked = |density: f64, throughput: f64| {
-                if density > 0.0 { format::exact(throughput) } else { "–".to_owned() }
-            };
-            let or_dash = |x: f64| if x > 0.0 { format::exact(x) } else { "–".to_owned() };
-            let texts = [
-                walked(vertex.light_pdf, detail.light_throughput(i).luminance()),
-                walked(vertex.eye_pdf, detail.eye_throughput(i).luminance()),
-                or_dash(vertex.light_pdf),
-                or_dash(vertex.eye_pdf),
-                detail.geometry.get(i).map_or(String::new(), |g| format::exact(*g)),
-            ];
-            for text in texts {
-                point(ui.label(RichText::new(text).monospace().size(11.0)), path, i);
-            }
-            ui.end_row();
-        }
-    });
-}
-
 /// All that is known of one vertex.
-fn card(ui: &mut Ui, selection: &Selection, index: usize, names: &Names<'_>) {
+fn card(ui: &mut Ui, path: Described<'_>, index: usize) {
+    let Described { selection, names, record } = path;
     let Some(vertex) = selection.vertices.get(index) else { return };
-    let p = names.world(vertex.position);
-    let n = decode_normal(vertex.normal);
+    let normal = decode_normal(vertex.normal);
+    let rows = [names.world(vertex.position), normal.as_dvec3()].map(|v| v.to_array());
+    let mut rows = triples(&rows, 6).into_iter();
     let what = format!("Vertex x{index}: {}", vertex.kind.name());
     ui.label(RichText::new(what).strong());
-    let numbers = |x: f64, y: f64, z: f64| format!("{x:.6}  {y:.6}  {z:.6}");
-    let mut lines = vec![
-        ("Position", numbers(p.x, p.y, p.z), "In the units of the scene file"),
-        ("Normal", numbers(n.x.into(), n.y.into(), n.z.into()), "Geometric, on the front side"),
+    let mut next = || rows.next().unwrap_or_default();
+    let mut lines: Vec<Line> = vec![
+        ("Position", next(), "In the units of the scene file"),
+        ("Normal", next(), "Geometric, on the front side; of length one"),
         ("Event", vertex.event.name().to_owned(), "What scatters the light"),
         ("Material", names.material(vertex).to_owned(), "Its name in the scene file"),
         ("Object", names.object(vertex).unwrap_or("–").to_owned(), "Its name in the scene file"),
@@ -170,53 +181,12 @@ fn card(ui: &mut Ui, selection: &Selection, index: usize, names: &Names<'_>) {
         lines.push(("Primitive", vertex.primitive.to_string(), "Its number in the scene"));
     }
     if let Some(detail) = selection.numbers() {
-        lines.extend(card_of_numbers(detail, index));
+        lines.extend(light::lines(path, detail, index));
+    }
+    if let Some(record) = record {
+        lines.extend(file::lines(record, index));
     }
     for (label, value, tip) in lines {
         row(ui, label, tip, |ui| ui.label(RichText::new(value).monospace()));
     }
-}
-
-type Line = (&'static str, String, &'static str);
-
-fn card_of_numbers(detail: &PathDetail, index: usize) -> Vec<Line> {
-    let Some(vertex) = detail.vertices.get(index) else { return Vec::new() };
-    let walk = |pdf: f64, weight: f64| {
-        if pdf > 0.0 {
-            format!("p {pdf:.4e}   f/p {weight:.4e}")
-        } else {
-            "no walk makes it".to_owned()
-        }
-    };
-    let color = |c: common::Rgb| format!("{:.3e}  {:.3e}  {:.3e}", c.r, c.g, c.b);
-    let mut lines = vec![
-        (
-            "From light",
-            walk(vertex.light_pdf, vertex.light_weight),
-            "Density of making it from the light side, and value over density without colour",
-        ),
-        (
-            "From eye",
-            walk(vertex.eye_pdf, vertex.eye_weight),
-            "Density of making it from the eye side, and value over density without colour",
-        ),
-    ];
-    if vertex.light_pdf > 0.0 {
-        let tip = "Throughput of a walk from the light that has come here: red, green, blue";
-        lines.push(("β light", color(detail.light_throughput(index)), tip));
-    }
-    if vertex.eye_pdf > 0.0 {
-        let tip = "Throughput of a walk from the eye that has come here: red, green, blue";
-        lines.push(("β eye", color(detail.eye_throughput(index)), tip));
-    }
-    lines.push((
-        "Colour",
-        color(vertex.color),
-        "What it gives to the path's colour: emission, reflectance or transmittance",
-    ));
-    if let Some(geometry) = detail.geometry.get(index) {
-        let tip = "Geometry term of the edge to the next vertex, in scene units: cos cos / r²";
-        lines.push(("G after", format!("{geometry:.6e}"), tip));
-    }
-    lines
 }

@@ -2,13 +2,119 @@
 
 use std::time::{Duration, Instant};
 
+use egui::accesskit::Role as WidgetRole;
+use egui::{Rect, Ui, vec2};
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::{Stage, shows};
-use crate::command::{CloudCommand, Command, LayoutCommand, Switch, ThemeName};
-use crate::panel::{help, hint, menu, status};
+use crate::command::{CloudCommand, Command, LayoutCommand, Switch, ThemeName, WindowSide};
+use crate::panel::{self, Panel, Placed, help, hint, menu, status};
 use crate::status::LinkState;
 use crate::synthetic::welcome;
+use crate::world::World;
+
+/// Everything, as in the window.
+#[derive(Debug)]
+struct Whole(Vec<Placed>);
+
+impl Panel for Whole {
+    fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+        panel::show(&mut self.0, ui, world, commands);
+    }
+}
+
+/// A window of this size in points.
+fn window(stage: Stage, width: f32, height: f32) -> Harness<'static, Stage> {
+    let mut harness = stage.harness();
+    harness.set_size(vec2(width, height));
+    harness.run_steps(4);
+    harness
+}
+
+fn whole(width: f32) -> Harness<'static, Stage> {
+    window(Stage::new(Whole(panel::all())), width, 480.0)
+}
+
+/// Where the view lies.
+fn view(harness: &Harness<'_, Stage>) -> Rect {
+    harness.get_by_role_and_label(WidgetRole::Canvas, "Viewport").rect()
+}
+
+#[test]
+fn the_view_keeps_room_in_a_small_window() {
+    // A window of 1280 pixels at 100, 150 and 200 per cent.
+    for width in [1280.0, 853.0, 640.0] {
+        let harness = whole(width);
+        let view = view(&harness);
+        assert!(view.width() >= 230.0, "{width}: the view has {}", view.width());
+        let strips = harness.query_all_by_label("«").count();
+        assert_eq!(strips, usize::from(width < 800.0), "{width}: a side is folded, if any must be");
+    }
+    let mut harness = whole(640.0);
+    assert!(!shows(&harness, "No image yet"), "the right side is folded");
+    harness.get_by_label("«").click();
+    harness.run_steps(4);
+    assert!(shows(&harness, "No image yet"), "it is opened");
+    assert!(harness.query_by_label("»").is_some(), "for the other one");
+    assert!(view(&harness).width() >= 230.0, "and the view keeps its room");
+    assert_eq!(harness.state().said, [], "what is remembered stays");
+}
+
+#[test]
+fn the_edge_of_a_side_is_dragged_from_both_sides_of_it() {
+    for (name, side, outwards) in [
+        ("Edge of the left side", WindowSide::Left, 1.0),
+        ("Edge of the right side", WindowSide::Right, -1.0),
+    ] {
+        for off in [-3.0, 3.0] {
+            let mut harness = whole(1280.0);
+            let before = harness.state().settings.layout.width(side);
+            let edge = harness.get_by_role_and_label(WidgetRole::Splitter, name).rect();
+            let from = edge.center() + vec2(off, 0.0);
+            let to = from + vec2(40.0 * outwards, 0.0);
+            harness.hover_at(from);
+            harness.run_steps(1);
+            harness.drag_at(from);
+            harness.run_steps(1);
+            harness.hover_at(to);
+            harness.run_steps(3);
+            harness.drop_at(to);
+            harness.run_steps(2);
+            let expected = LayoutCommand::Width(side, before + 40);
+            let said = &harness.state().said;
+            assert_eq!(*said, [Command::Layout(expected)], "{name}, from {off}");
+        }
+    }
+}
+
+#[test]
+fn menus_and_the_sheet_fit_a_low_window() {
+    let height = 360.0;
+    let mut harness = window(Stage::new(menu::Menu::default()), 640.0, height);
+    harness.get_by_label("View").click();
+    harness.run_steps(4);
+    let bar = harness.get_by_label("View").rect();
+    let line = harness.get_by_label("Filter").rect();
+    assert!(line.top() >= bar.bottom(), "the bar is not covered");
+    assert!(harness.query_by_label_contains("Quit").is_some(), "the last line is there");
+    let mut stage = Stage::new(help::Help);
+    stage.settings.layout.help = true;
+    let mut harness = window(stage, 640.0, height);
+    for label in ["Keys and mouse", "Close"] {
+        let rect = harness.get_by_label(label).rect();
+        assert!(rect.top() >= 0.0 && rect.bottom() <= height, "{label} is visible: {rect:?}");
+    }
+    let words = harness.get_by_label("look through the render camera").rect();
+    assert!(words.height() < 45.0, "no column of single words: {words:?}");
+    let heading = harness.get_by_label("Keys and mouse").rect();
+    let list = harness.get_by_label("Mouse").rect();
+    assert!(list.top() >= heading.bottom(), "the lists begin below the heading");
+    harness.get_by_label("Close").click();
+    harness.run_steps(3);
+    let expected = [Command::Layout(LayoutCommand::Help(Switch::Off))];
+    assert_eq!(harness.state().said, expected, "closed");
+}
 
 #[test]
 fn the_status_bar_tells_every_state() {

@@ -58,7 +58,7 @@ fn the_bar_at_the_foot_tells_who_drives_what() {
     let driver = Attendee { author, role: Role::Driver, ..Attendee::default() };
     stage.status.steering.take(Notice::Presence(Presence { viewers: vec![driver] }));
     let mut harness = stage.harness();
-    harness.set_size(egui::vec2(1280.0, 40.0));
+    harness.set_size(vec2(1280.0, 40.0));
     harness.run_steps(3);
     for text in ["Connected to", "Chains paused", "Ada drives", "2.5", "dropped", "mutations/s"] {
         assert!(shows(&harness, text), "`{text}` is missing");
@@ -160,7 +160,7 @@ fn dragged(mouse: MousePreset, button: PointerButton, modifiers: Modifiers) -> V
     harness.run_steps(2);
     let view = harness.get_by_role_and_label(WidgetRole::Canvas, "Viewport").rect();
     let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers };
-    let (from, to) = (view.center(), view.center() + egui::vec2(60.0, 40.0));
+    let (from, to) = (view.center(), view.center() + vec2(60.0, 40.0));
     let held = Event::ModifiersChanged(modifiers);
     for event in [held, Event::PointerMoved(from), press(from, true), Event::PointerMoved(to)] {
         harness.event(event);

@@ -64,7 +64,7 @@ impl Stage {
 
     pub(super) fn harness(self) -> Harness<'static, Self> {
         Harness::builder()
-            .with_size(egui::vec2(520.0, 700.0))
+            .with_size(vec2(520.0, 700.0))
             .build_ui_state(|ui, stage: &mut Self| stage.show(ui), self)
     }
 

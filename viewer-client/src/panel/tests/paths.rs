@@ -59,7 +59,7 @@ fn every_vertex_has_throughputs_densities_and_geometry() {
     }
     harness.get_by_label("D x1").hover();
     harness.run_steps(40);
-    for text in ["Vertex x1: diffuse", "p 6.2500e-2", "1.250000e-6", "room"] {
+    for text in ["Vertex x1: diffuse", "p 0.0625 per sr", "G after", "room"] {
         assert!(shows(&harness, text), "`{text}` is missing from the tooltip");
     }
     let pointed = hover::pointed(&harness.ctx);
@@ -125,7 +125,7 @@ fn the_path_panel_tells_all_of_a_path() {
     stage.selection = Some(Selection { vertex: Some(1), ..selected(Detail::Unasked) });
     let mut harness = stage.harness();
     harness.run();
-    for text in ["D D D", "2 of 3 here", "bidirectional", "1.0000e0", "4.000 6.000 3.000"] {
+    for text in ["D D D", "2 of 3 here", "bidirectional", "1.000", "4.000  6.000     3.000"] {
         assert!(shows(&harness, text), "`{text}` is missing");
     }
     assert!(shows(&harness, "5.000000"), "the edge before the vertex");
@@ -137,6 +137,40 @@ fn the_path_panel_tells_all_of_a_path() {
     assert_eq!(harness.state().said, expected.map(Command::Path), "two clicks");
 }
 
+/// The panel of the path that a file shows last.
+fn of_file(file: crate::dump::Stage) -> Harness<'static, Stage> {
+    let mut stage = Stage::new(path::PathPanel::default());
+    let act = file.acts.last().expect("a path");
+    let detail = Detail::Missing("A file of paths does not tell them.".to_owned());
+    let selection = Selection::new(act.header, act.vertices.clone());
+    stage.selection = Some(Selection { detail, ..selection });
+    stage.playback = Some(crate::playback::Playback::new(file));
+    stage.harness()
+}
+
+#[test]
+fn a_path_of_a_file_claims_what_the_file_tells() {
+    let mut silent = of_file(crate::dump::tests::stage_with_numbers());
+    silent.run();
+    assert!(shows(&silent, "Record of line 1"), "where it is");
+    for text in ["seed", "chain 0", "a = 1.0000", "0 steps"] {
+        assert!(!shows(&silent, text), "`{text}` is made up");
+    }
+    silent.get_by_label("Explore").click();
+    silent.run();
+    assert!(silent.state().said.is_empty(), "there is nobody to explore");
+    silent.get_by_label("Light").click();
+    silent.run();
+    for text in ["f/p light", "0.0100", "0.2200", "Throughputs, geometry terms"] {
+        assert!(shows(&silent, text), "`{text}` is missing");
+    }
+    let mut annotated = of_file(crate::dump::tests::stage());
+    annotated.run();
+    for text in ["chain 4, step 3", "a = 0.5000", "0 steps", "Densities, throughputs"] {
+        assert!(shows(&annotated, text), "`{text}` is missing");
+    }
+}
+
 #[test]
 fn a_file_of_paths_is_stepped_and_told() {
     let mut stage = Stage::new(playback::PlaybackPanel);
@@ -145,9 +179,12 @@ fn a_file_of_paths_is_stepped_and_told() {
     stage.playback = Some(file);
     let mut harness = stage.harness();
     harness.run();
-    for text in
-        ["Step 3 of 4", "rejected, a = 0.2500", "E - e - c", "lens: 0.0 % of 2 accepted, 1 failed"]
-    {
+    for text in [
+        "Paused, step 3 of 4",
+        "rejected, a = 0.2500",
+        "E - e - c",
+        "lens: 0.0 % of 2 accepted, 1 failed",
+    ] {
         assert!(shows(&harness, text), "`{text}` is missing");
     }
     for button in ["Accepted", "Back", "Play"] {

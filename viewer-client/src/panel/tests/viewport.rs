@@ -87,7 +87,7 @@ fn a_path_under_the_resting_cursor_is_told_of() {
         matches!(hover::pointed(&harness.ctx), Some(Pointed::Path(_))),
         "its film point is marked on the image"
     );
-    for text in ["D D D", "bidirectional", "Luminance 1.000e0", "Click to select it"] {
+    for text in ["D D D", "bidirectional", "Luminance 1.000", "Click to select it"] {
         assert!(shows(&harness, text), "`{text}` is missing");
     }
     assert_eq!(harness.state().said, [], "to look is no command");

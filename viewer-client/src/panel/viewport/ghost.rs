@@ -4,7 +4,7 @@
 //! edges are dashed and proposed ones thick, so that nothing rests on colour alone.
 
 use common::VertexRecord;
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, vec2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 use glam::Vec3;
 
 use super::highlight::arrow_head;
@@ -20,6 +20,8 @@ const KEPT: f32 = 2.5;
 const NEW: f32 = 4.0;
 const RIM: f32 = 2.0;
 const FAN: f32 = 1.4;
+/// Room for an entry of the key.
+const KEY_ENTRY: Vec2 = vec2(118.0, 20.0);
 /// Most proposals of a fan that are drawn.
 const MOST_OF_FAN: usize = 200;
 
@@ -37,7 +39,7 @@ pub(super) fn paint(painter: &Painter, projector: &Projector, rect: Rect, world:
         fan(&pen, world, moment);
     }
     step(&pen, moment);
-    key(painter, rect, moment);
+    key(painter, rect, moment, world.settings.layout.dark);
 }
 
 /// All proposals of the fan that `moment` belongs to, fainter the less likely they are; those that
@@ -104,12 +106,20 @@ fn step(pen: &Pen<'_>, moment: &Moment) {
     }
 }
 
-/// What the strokes mean, below the line that counts paths.
-fn key(painter: &Painter, rect: Rect, moment: &Moment) {
-    let ink = Color32::WHITE;
-    let mut place = rect.center_top() + vec2(-170.0, MARGIN + 34.0);
-    let area = Rect::from_min_size(place - vec2(8.0, 9.0), vec2(356.0, 20.0));
+/// What the strokes mean, below the line that counts paths: beside each other where the view is wide
+/// enough, and otherwise one over the other.
+fn key(painter: &Painter, rect: Rect, moment: &Moment, dark: bool) {
+    let ink = if dark { Color32::WHITE } else { Color32::from_rgb(40, 44, 50) };
+    let is_wide = rect.width() >= 3.0 * KEY_ENTRY.x + 2.0 * MARGIN;
+    let (size, step) = if is_wide {
+        (vec2(3.0 * KEY_ENTRY.x, KEY_ENTRY.y), vec2(KEY_ENTRY.x, 0.0))
+    } else {
+        (vec2(KEY_ENTRY.x, 3.0 * KEY_ENTRY.y), vec2(0.0, KEY_ENTRY.y))
+    };
+    let left = if is_wide { rect.center().x - 0.5 * size.x } else { rect.left() + MARGIN };
+    let area = Rect::from_min_size(pos2(left, rect.top() + MARGIN + 27.0), size);
     veil(painter, area, ink);
+    let mut place = area.min + vec2(4.0, 0.5 * KEY_ENTRY.y);
     let made = if moment.step.is_complete() { "proposed" } else { "came to" };
     for (name, color, width, dashed) in [
         ("kept", theme::EXPLORED, KEPT, false),
@@ -118,6 +128,11 @@ fn key(painter: &Painter, rect: Rect, moment: &Moment) {
     ] {
         let line = [place, place + vec2(34.0, 0.0)];
         let stroke = Stroke::new(width, color);
+        if !dark && !dashed {
+            // As in the scene: pale lines need a rim on light ground.
+            let rim = Stroke::new(width + 2.0 * RIM, Color32::from_black_alpha(110));
+            painter.line_segment(line, rim);
+        }
         if dashed {
             painter.extend(Shape::dashed_line(&line, stroke, 7.0, 5.0));
         } else {
@@ -125,7 +140,7 @@ fn key(painter: &Painter, rect: Rect, moment: &Moment) {
         }
         let font = FontId::proportional(12.0);
         painter.text(place + vec2(42.0, 0.0), Align2::LEFT_CENTER, name, font, ink);
-        place.x += 118.0;
+        place += step;
     }
 }
 

@@ -127,16 +127,16 @@ fn paint(painter: &Painter, projector: &Projector, found: &Selection) {
 fn tell(ui: &mut Ui, world: &World<'_>, found: &Selection) {
     let names = world.names();
     ui.label(RichText::new(found.class()).monospace().strong());
-    ui.horizontal(|ui| {
-        dot(ui, theme::strategy_color(usize::from(found.header.strategy.0)));
-        ui.label(names.strategy(&found.header));
-    });
     let h = &found.header;
-    ui.label(format!(
-        "Luminance {:.3e}, stayed {}",
-        h.luminance,
-        format::steps(u64::from(h.dwell))
-    ));
+    // A file does not tell these.
+    if world.playback.is_none() {
+        ui.horizontal(|ui| {
+            dot(ui, theme::strategy_color(usize::from(h.strategy.0)));
+            ui.label(names.strategy(h));
+        });
+        let stay = format::steps(u64::from(h.dwell));
+        ui.label(format!("Luminance {}, stayed {stay}", format::exact(names.luminance(h))));
+    }
     ui.label(RichText::new(format!("Path {}", h.id)).weak());
     let (_, of) = found.place;
     let more = if of > 1 { format!(" (1 of {of} here)") } else { String::new() };

@@ -1,23 +1,31 @@
 //! What the colours say, in the lower right corner.
 
 use common::VertexKind;
-use egui::{Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, epaint::Mesh, pos2, vec2};
+use egui::epaint::Mesh;
+use egui::text::{LayoutJob, TextWrapping};
+use egui::{Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
-use super::overlay::{MARGIN, veil};
+use super::overlay::{AXES, MARGIN, veil};
 use crate::command::{ColorMode, ColorScale};
 use crate::format;
 use crate::theme;
 use crate::world::World;
 
+/// Room for the dot before an entry, in points.
+const DOT: f32 = 16.0;
 /// Width of the ramp in points.
 const RAMP_WIDTH: f32 = 168.0;
+/// In a narrower view, in points, the legend is above the axes, not beside them.
+const NARROW: f32 = 320.0;
 /// Chains that have a colour of their own.
 const CHAIN_COLORS: usize = 16;
 
 /// Writes the legend.
 pub(super) fn paint(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
-    let place = rect.right_bottom() + vec2(-MARGIN, -MARGIN);
-    let mut column = Column { painter, place, ink };
+    let lift = if rect.width() < NARROW { AXES } else { MARGIN };
+    let place = rect.right_bottom() - vec2(MARGIN, lift);
+    let most = (rect.width() - 2.0 * MARGIN).max(0.0);
+    let mut column = Column { painter, place, most, ink };
     let cloud = &world.settings.cloud;
     if cloud.ends {
         column.entry("end, at the camera", theme::CAMERA_END);
@@ -37,13 +45,14 @@ pub(super) fn paint(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color
             column.ramp(&format!("edges ({scale})"), "1", "10 and more", &ramp);
         }
         ColorMode::Luminance => {
+            let light = world.names().frame.map_or(1.0, |frame| frame.light) as f32;
             let (low, high) = world.store.tone().range();
             let lowest = match scale {
-                ColorScale::Log => format!("{:.1e}", low.exp2()),
+                ColorScale::Log => format!("{:.1e}", light * low.exp2()),
                 ColorScale::Linear => "0".to_owned(),
             };
             let title = format!("luminance ({scale})");
-            column.ramp(&title, &lowest, &format!("{:.1e}", high.exp2()), &ramp);
+            column.ramp(&title, &lowest, &format!("{:.1e}", light * high.exp2()), &ramp);
         }
         ColorMode::Throughput => {
             let lowest = if scale == ColorScale::Log { "0.001 and less" } else { "0" };
@@ -86,15 +95,19 @@ fn kinds(column: &mut Column<'_>) {
 struct Column<'a> {
     painter: &'a Painter,
     place: Pos2,
+    /// Widest that an entry may be, in points.
+    most: f32,
     ink: Color32,
 }
 
 impl Column<'_> {
     fn entry(&mut self, label: &str, color: Color32) {
         let font = FontId::proportional(12.0);
-        let galley = self.painter.layout_no_wrap(label.to_owned(), font, self.ink);
+        let mut job = LayoutJob::simple_singleline(label.to_owned(), font, self.ink);
+        job.wrap = TextWrapping::truncate_at_width((self.most - DOT).max(0.0));
+        let galley = self.painter.layout_job(job);
         let left = self.place - galley.size();
-        let rect = Rect::from_min_max(left - vec2(16.0, 0.0), self.place);
+        let rect = Rect::from_min_max(left - vec2(DOT, 0.0), self.place);
         veil(self.painter, rect, self.ink);
         self.painter.circle_filled(left + vec2(-10.0, 0.5 * galley.size().y), 4.0, color);
         self.painter.galley(left, galley, self.ink);
@@ -104,7 +117,8 @@ impl Column<'_> {
     fn ramp(&mut self, title: &str, low: &str, high: &str, colors: &[Color32]) {
         let font = FontId::proportional(12.0);
         let height = 46.0;
-        let rect = Rect::from_min_max(self.place - vec2(RAMP_WIDTH, height), self.place);
+        let width = RAMP_WIDTH.min(self.most);
+        let rect = Rect::from_min_max(self.place - vec2(width, height), self.place);
         veil(self.painter, rect, self.ink);
         let text = |place: Pos2, anchor: egui::Align2, text: &str| {
             self.painter.text(place, anchor, text, font.clone(), self.ink);

@@ -14,6 +14,10 @@ use crate::world::World;
 
 /// Distance of texts from the edge in points.
 pub(super) const MARGIN: f32 = 14.0;
+/// Radius of the disc that the axes lie on, in points.
+const DISC: f32 = 33.0;
+/// Height above the lower edge, in points, from which on nothing of the axes is in the way.
+pub(super) const AXES: f32 = MARGIN + 26.0 + DISC + 8.0;
 
 /// Writes over the view.
 pub(super) fn paint(ui: &Ui, projector: &Projector, rect: Rect, world: &World<'_>) {
@@ -98,7 +102,7 @@ fn axes(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
     ];
     // The farthest first, so that nearer arms lie on top.
     arms.sort_by(|a, b| b.0.dot(lens.forward).total_cmp(&a.0.dot(lens.forward)));
-    painter.circle_filled(centre, 33.0, Color32::from_black_alpha(36));
+    painter.circle_filled(centre, DISC, Color32::from_black_alpha(36));
     for (axis, name, color) in arms {
         let tip = centre + 24.0 * vec2(axis.dot(lens.right), -axis.dot(lens.up));
         let away = axis.dot(lens.forward) > 0.2;

@@ -1,0 +1,95 @@
+//! What a file of paths tells of one of them, and what it does not.
+
+use egui::{Grid, Ui};
+
+use super::light::color;
+use super::vertices::{Described, Line, numbers, title};
+use crate::command::Command;
+use crate::dump::{Act, Outcome, Walked};
+use crate::format;
+use crate::selection::Selection;
+use crate::units::Measure;
+use crate::world::World;
+
+/// Stands for what is not known.
+pub(super) const UNKNOWN: &str = "–";
+
+/// The record of the selected path, where it is one of the file that is played.
+pub(super) fn record<'a>(world: &World<'a>, selection: &Selection) -> Option<&'a Act> {
+    let acts = &world.playback?.stage().acts;
+    acts.iter()
+        .find(|act| act.header.id == selection.header.id && act.vertices == selection.vertices)
+}
+
+/// True where the file has densities and weights of the path.
+pub(super) fn tells_numbers(record: &Act) -> bool {
+    record.numbers.iter().any(|n| n.from_light.is_some() || n.from_eye.is_some())
+}
+
+/// The acceptance probability of the proposal that made it.
+pub(super) fn acceptance(record: Option<&Act>) -> String {
+    match record.map(|record| record.outcome) {
+        Some(Outcome::Accepted(a)) => format!("a = {a:.4}"),
+        _ => UNKNOWN.to_owned(),
+    }
+}
+
+/// How long the chain stayed; only a file that tells of every step knows.
+pub(super) fn stay(record: Option<&Act>) -> String {
+    match record.filter(|record| record.outcome != Outcome::Recorded) {
+        Some(record) => format::steps(u64::from(record.header.dwell)),
+        None => UNKNOWN.to_owned(),
+    }
+}
+
+/// A row a vertex.
+pub(super) fn table(ui: &mut Ui, path: Described<'_>, record: &Act, commands: &mut Vec<Command>) {
+    let columns = columns(record);
+    Grid::new("of the file").num_columns(5).striped(true).spacing([9.0, 3.0]).show(ui, |ui| {
+        title(ui, "", "");
+        let measure = "per square unit of the scene file at the vertex itself, as Mitsuba has it; a \
+                       probability behind a mirror or glass, and at the lens";
+        title(ui, "p light", &format!("Density of making the vertex from the light side, {measure}"));
+        title(ui, "p eye", &format!("Density of making the vertex from the eye side, {measure}"));
+        let weight = "in luminance: value over density of the step that makes the vertex";
+        title(ui, "f/p light", &format!("Weight from the light side, {weight}"));
+        title(ui, "f/p eye", &format!("Weight from the eye side, {weight}"));
+        ui.end_row();
+        numbers(ui, path, &columns, commands);
+    });
+}
+
+fn columns(record: &Act) -> [Vec<String>; 4] {
+    let density = |walked: Option<Walked>| {
+        walked.map_or_else(|| UNKNOWN.to_owned(), |walked| format::exact(walked.pdf))
+    };
+    let weight = |walked: Option<Walked>| {
+        walked.map_or_else(|| UNKNOWN.to_owned(), |w| format::exact(w.weight.luminance()))
+    };
+    let numbers = || record.numbers.iter();
+    [
+        numbers().map(|n| density(n.from_light)).collect(),
+        numbers().map(|n| density(n.from_eye)).collect(),
+        numbers().map(|n| weight(n.from_light)).collect(),
+        numbers().map(|n| weight(n.from_eye)).collect(),
+    ]
+}
+
+/// All of one vertex.
+pub(super) fn lines(record: &Act, index: usize) -> Vec<Line> {
+    let Some(numbers) = record.numbers.get(index) else { return Vec::new() };
+    let sides = [("From light", numbers.from_light), ("From eye", numbers.from_eye)];
+    let lines = sides.into_iter().map(|(side, walked)| {
+        let text = walked.map_or_else(|| UNKNOWN.to_owned(), told);
+        let tip = "As the file has it: density of making the vertex from this side, and value over \
+                   density in red, green and blue";
+        (side, text, tip)
+    });
+    lines.collect()
+}
+
+fn told(walked: Walked) -> String {
+    let measure = if walked.is_discrete { Measure::Probability } else { Measure::Area };
+    let (pdf, weight) = (format::exact(walked.pdf), color(walked.weight));
+    format!("p {pdf} {}   f/p {weight}", measure.unit())
+}

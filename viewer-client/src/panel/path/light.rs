@@ -1,0 +1,112 @@
+//! What the daemon tells of the vertices of a path: throughputs, densities, geometry terms.
+
+use common::{PathDetail, Rgb};
+use egui::{Grid, Ui};
+
+use super::vertices::{Described, Line, numbers, title};
+use crate::command::Command;
+use crate::format;
+use crate::units::{Measure, Start};
+
+/// A row a vertex.
+pub(super) fn table(
+    ui: &mut Ui,
+    path: Described<'_>,
+    detail: &PathDetail,
+    commands: &mut Vec<Command>,
+) {
+    Grid::new("light").num_columns(6).striped(true).spacing([9.0, 3.0]).show(ui, |ui| {
+        title(ui, "", "");
+        let tip = "Luminance that a walk from the light carries when it has come here. At x0 that is \
+                   the area of the lamp over the probability of its choice, in square units of the \
+                   scene file (one over the density of the start, for lights without a surface), \
+                   from x1 on it is flux: radiance times square unit times sr";
+        title(ui, "β light", tip);
+        let tip = "Luminance that a walk from the eye carries when it has come here: reflectances \
+                   and the like, without a unit; the whole film counts as one";
+        title(ui, "β eye", tip);
+        let tip = "Density of making the vertex from the light side: of x0 per square unit of the \
+                   scene file, of the others per sr (solid angle at the vertex before), and a \
+                   probability behind a mirror or glass. On a point or the sun x0 has a \
+                   probability, in the sky a density per sr; x1 has one per square unit of a disk \
+                   behind sun and sky";
+        title(ui, "p light", tip);
+        let tip = "Density of making the vertex from the eye side, per sr (solid angle at the \
+                   vertex after); a probability behind a mirror or glass; per film for the last \
+                   two";
+        title(ui, "p eye", tip);
+        let tip = "Geometry term of the edge to the next vertex, cos cos / r², per square unit of \
+                   the scene file; at the lens with film area per solid angle in the place of its \
+                   cosine";
+        title(ui, "G", tip);
+        ui.end_row();
+        numbers(ui, path, &columns(detail), commands);
+    });
+}
+
+fn columns(detail: &PathDetail) -> [Vec<String>; 5] {
+    let vertices = || detail.vertices.iter().enumerate();
+    let walked = |density: f64, throughput: Rgb| {
+        if density > 0.0 { format::exact(throughput.luminance()) } else { "–".to_owned() }
+    };
+    let density = |p: f64| if p > 0.0 { format::exact(p) } else { "–".to_owned() };
+    [
+        vertices().map(|(i, v)| walked(v.light_pdf, detail.light_throughput(i))).collect(),
+        vertices().map(|(i, v)| walked(v.eye_pdf, detail.eye_throughput(i))).collect(),
+        vertices().map(|(_, v)| density(v.light_pdf)).collect(),
+        vertices().map(|(_, v)| density(v.eye_pdf)).collect(),
+        detail.geometry.iter().map(|geometry| format::exact(*geometry)).collect(),
+    ]
+}
+
+/// All of one vertex.
+pub(super) fn lines(path: Described<'_>, detail: &PathDetail, index: usize) -> Vec<Line> {
+    let Some(vertex) = detail.vertices.get(index) else { return Vec::new() };
+    let vertices = path.selection.vertices.as_slice();
+    let start = vertices.first().map_or(Start::Surface, |first| Start::of(first, path.names.mesh));
+    let walk = |pdf: f64, weight: f64, measure: Measure| {
+        if pdf > 0.0 {
+            format!("p {} {}   f/p {}", format::exact(pdf), measure.unit(), format::exact(weight))
+        } else {
+            "no walk makes it".to_owned()
+        }
+    };
+    let tip = "Density of making it from this side, and value over density without colour, in the \
+               inverse unit; a square unit is one of the scene file";
+    let light = Measure::from_light(index, vertices, start);
+    let eye = Measure::from_eye(index, vertices);
+    let mut lines = vec![
+        ("From light", walk(vertex.light_pdf, vertex.light_weight, light), tip),
+        ("From eye", walk(vertex.eye_pdf, vertex.eye_weight, eye), tip),
+    ];
+    if vertex.light_pdf > 0.0 {
+        let tip = if index == 0 {
+            "Throughput of a walk from the light at its start, before its light is counted: area of \
+             the lamp over probability, in square units of the scene file"
+        } else {
+            "Throughput of a walk from the light that has come here: red, green, blue flux"
+        };
+        lines.push(("β light", color(detail.light_throughput(index)), tip));
+    }
+    if vertex.eye_pdf > 0.0 {
+        let tip = "Throughput of a walk from the eye that has come here: red, green, blue; no unit";
+        lines.push(("β eye", color(detail.eye_throughput(index)), tip));
+    }
+    let tip = if index == 0 {
+        "Emission as the scene file has it: radiance, intensity or irradiance"
+    } else {
+        "What it gives to the path's colour: reflectance or transmittance"
+    };
+    lines.push(("Colour", color(vertex.color), tip));
+    if let Some(geometry) = detail.geometry.get(index) {
+        let tip = "Geometry term of the edge to the next vertex, cos cos / r², per square unit of \
+                   the scene file";
+        lines.push(("G after", format::exact(*geometry), tip));
+    }
+    lines
+}
+
+/// Red, green, blue.
+pub(super) fn color(rgb: Rgb) -> String {
+    [rgb.r, rgb.g, rgb.b].map(format::exact).join("  ")
+}
