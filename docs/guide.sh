@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Draws the pictures of docs/GUIDE.md anew, without a display: docs/guide.sh
+# Draws the pictures of docs/GUIDE.md anew, without a display: docs/guide.sh [NAME...]
+# All of them, or those with these names.
 # Needs ImageMagick, and the viewer: set VIEWER to its program, or it is built.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -19,6 +20,7 @@ VIEWER=$(realpath "$VIEWER")
 mkdir -p "$FOLDER"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+readonly wanted=" $* "
 
 # The viewer without a window, in a folder of its own.
 look() {
@@ -27,11 +29,15 @@ look() {
 }
 
 # shot NAME SCENE SIZE CROP PATHS, with the commands on standard input. CROP is a geometry of
-# ImageMagick from the upper right, or `all`; so many paths come before the picture is taken.
+# ImageMagick from the upper right, or `all`; so many paths come before the picture is taken, or so
+# many seconds pass, as in `8s`.
 shot() {
   local name=$1 scene=$2 size=$3 crop=$4 paths=$5
   cat >"$work/script"
-  look --scene "$scene" --size "$size" --wait-paths "$paths" --run script
+  [[ $wanted == "  " || $wanted == *" $name "* ]] || return 0
+  local wait=(--wait-paths "$paths")
+  [[ $paths != *s ]] || wait=(--wait "${paths%s}")
+  look --scene "$scene" --size "$size" "${wait[@]}" --run script
   local cut=()
   [[ $crop == all ]] || cut=(-gravity NorthEast -crop "$crop" +repage -gravity None)
   local colors
@@ -51,7 +57,7 @@ cloud shown 1200
 image fit
 EOF
 
-shot hint cornell 1280x720 760x420+372+36 20000 <<'EOF'
+shot hint cornell 1280x720 640x420+372+262 20000 <<'EOF'
 panel path off
 panel explorer off
 hint on
@@ -124,6 +130,18 @@ panel cloud off
 panel scene off
 cloud shown 900
 filter set edges >= 4 and (lpe "C.*DS+L" or any on material "glass")
+EOF
+
+shot miss caustic 1280x720 all 12s <<'EOF'
+panel path off
+panel explorer off
+panel statistics off
+panel diagnostics off
+panel image off
+panel cloud off
+panel scene off
+filter add any -0.85 1.75 -0.85 0.04
+filter set lpe "C.*DS+L" and edges >= 5
 EOF
 
 shot fan door 1280x720 all 60000 <<'EOF'

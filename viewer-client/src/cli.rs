@@ -122,7 +122,8 @@ pub struct WatchArgs {
     #[arg(long, value_name = "ORDER", value_parser = order, requires = "focus")]
     pub order: Vec<Order>,
     /// Prints the numbers behind a path that was shown lately, such as `3.0.1520`: densities,
-    /// throughputs, geometry terms and the weight of every split; then ends.
+    /// throughputs, geometry terms and the weight of every split, in the daemon's units (see
+    /// docs/NOTATION.md); then ends.
     #[arg(long, value_name = "CHAIN.EPOCH.STEP", conflicts_with_all = ["filter", "focus", "count"])]
     pub inspect: Option<PathId>,
     /// Ends after this many batches, or steps of the explorer.

@@ -2,6 +2,7 @@
 
 use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::Arc;
+use std::thread;
 
 use anyhow::Context as _;
 use common::{SceneFrame, SceneMesh};
@@ -13,6 +14,11 @@ use tracer_server::scene::load::load;
 
 /// The scene that is shown when none is named.
 pub const DEFAULT_SCENE: &str = "cornell";
+
+/// Worker threads: a core is left to whoever draws, or every step of the mouse would wait for chains.
+fn threads() -> usize {
+    thread::available_parallelism().map_or(1, |cores| (cores.get() - 1).max(1))
+}
 
 /// The surfaces of a scene, and how their coordinates relate to those of its file.
 pub fn surfaces(scene: &str) -> anyhow::Result<(SceneFrame, SceneMesh)> {
@@ -34,6 +40,7 @@ pub fn start(scene: &str) -> anyhow::Result<Daemon> {
         listen: SocketAddr::from((Ipv4Addr::LOCALHOST, 0)),
         ensemble: EnsembleSettings {
             strategies: of_scene(&loaded.strategies)?,
+            threads: threads(),
             ..EnsembleSettings::default()
         },
         ..DaemonOptions::default()

@@ -85,8 +85,14 @@ pub fn run(viewer: Viewer, peer: Option<Peer>, commands: Vec<Command>) -> anyhow
 
 /// Programs that stand in for a graphics card spend most of their time on samples.
 pub(crate) fn quality(gpu: &egui_wgpu::RenderState) -> Quality {
+    let tells_depth = wgpu::DownlevelFlags::DEPTH_TEXTURE_AND_BUFFER_COPIES;
     match gpu.adapter.get_info().device_type {
-        wgpu::DeviceType::Cpu => Quality::Fast,
+        wgpu::DeviceType::Cpu
+            if gpu.adapter.get_downlevel_capabilities().flags.contains(tells_depth) =>
+        {
+            Quality::Fast
+        }
+        wgpu::DeviceType::Cpu => Quality::Plain,
         _ => Quality::Smooth,
     }
 }

@@ -61,6 +61,11 @@ impl World<'_> {
         self.status.statistics.as_ref()?.diagnostics.as_deref()
     }
 
+    /// What the filter found: in the file that is played, or as the daemon counts.
+    pub fn filter_counts(&self) -> Option<&FilterCounts> {
+        self.counted.or_else(|| self.status.statistics.as_ref().map(|s| &s.filter))
+    }
+
     /// True where a panel has something to show: a file of paths has no chains that run.
     pub fn has_use_for(&self, panel: PanelName) -> bool {
         match panel {

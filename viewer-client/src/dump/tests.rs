@@ -1,7 +1,6 @@
 //! Files of every kind.
 
 use std::fmt::Write as _;
-
 use std::path::PathBuf;
 
 use common::{Event, Rgb, SceneFrame, SceneMesh, VertexKind};

@@ -115,8 +115,7 @@ fn scene(world: &World<'_>) -> String {
 fn filter(world: &World<'_>) -> String {
     let mut text = String::new();
     line!(text, "{}", world.settings.filter.wanted());
-    let of_daemon = || world.status.statistics.as_ref().map(|s| &s.filter);
-    let Some(counts) = world.counted.or_else(of_daemon) else { return text };
+    let Some(counts) = world.filter_counts() else { return text };
     line!(text, "{}", found::text(world, counts));
     line!(text, "energy\t{}", found::energy(counts));
     let reply = world.status.filter.as_ref();

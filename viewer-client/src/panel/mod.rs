@@ -141,6 +141,8 @@ pub fn show(panels: &mut [Placed], ui: &mut Ui, world: &World<'_>, commands: &mu
 /// Height of the room below the last section, in points.
 const FOOT: f32 = 40.0;
 
+/// A section is read where so many points of it are seen.
+const READABLE: f32 = 120.0;
 /// How far from the edge of a side it can be dragged, in points.
 const GRIP: f32 = 4.0;
 
@@ -370,8 +372,14 @@ fn sections(
             });
             let above = shown.response.rect.top() - ui.min_rect().top();
             hold(ui, name, above);
-            if ui.data(|data| data.get_temp(revealed())) == Some(name) {
+            let is_asked = ui.data(|data| data.get_temp(revealed())) == Some(name);
+            if is_asked {
                 ui.data_mut(|data| data.remove::<PanelName>(revealed()));
+            }
+            let is_picked = name == PanelName::Path && picked_anew(ui, world);
+            let is_hidden = shown.response.rect.top() + READABLE > ui.clip_rect().bottom()
+                || shown.response.rect.top() < ui.clip_rect().top();
+            if is_asked || is_picked && is_hidden {
                 shown.response.scroll_to_me(Some(egui::Align::Min));
             }
             if shown.response.contains_pointer() {
@@ -405,6 +413,18 @@ fn reveal(ui: &Ui, name: PanelName, world: &World<'_>, commands: &mut Vec<Comman
     }
     use_side(ui, if layout.is_left(name) { WindowSide::Left } else { WindowSide::Right });
     ui.data_mut(|data| data.insert_temp(revealed(), name));
+}
+
+/// Notes that the user has clicked on a path in the view, whose section is to be seen.
+fn note_pick(ui: &Ui) {
+    ui.data_mut(|data| data.insert_temp(Id::unique("picked in the view"), true));
+}
+
+/// True once after a click on a path in the view.
+fn picked_anew(ui: &Ui, world: &World<'_>) -> bool {
+    let id = Id::unique("picked in the view");
+    let clicked: Option<bool> = ui.data_mut(|data| data.remove_temp(id));
+    clicked.is_some() && world.selection.is_some()
 }
 
 /// Where the section is kept that is to be scrolled to.

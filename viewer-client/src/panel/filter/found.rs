@@ -19,8 +19,7 @@ const MARGIN: f64 = 1.02;
 
 /// Shows counts and, where nothing matches, why and what to do.
 pub(super) fn show(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
-    let of_daemon = || world.status.statistics.as_ref().map(|s| &s.filter);
-    let Some(counts) = world.counted.or_else(of_daemon) else { return };
+    let Some(counts) = world.filter_counts() else { return };
     let reply = world.status.filter.as_ref();
     let bad = theme::bad(ui.visuals().dark_mode);
     if let Some(error) = reply.and_then(|reply| reply.error.as_ref()) {

@@ -17,7 +17,7 @@ mod selectors;
 use egui::{Role, Sense, Ui, WidgetInfo};
 
 use self::project::Projector;
-use super::Panel;
+use super::{Panel, note_pick};
 use crate::command::{Command, PathCommand};
 use crate::gpu::ViewportCallback;
 use crate::world::World;
@@ -46,6 +46,7 @@ impl Panel for Viewport {
             {
                 let aim = projector.aim(place, TOLERANCE);
                 commands.push(Command::Path(PathCommand::Pick(aim)));
+                note_pick(ui);
             }
         }
 

@@ -32,6 +32,7 @@ pub(super) fn paint(ui: &Ui, projector: &Projector, rect: Rect, world: &World<'_
         nothing_yet(&painter, rect, world, ink);
         return;
     }
+    nothing_found(&painter, rect, world, ink);
     others::paint(&painter, projector, world, ink);
     light::paint(&painter, projector, world);
     selectors::paint(&painter, projector, world);
@@ -82,6 +83,25 @@ fn nothing_yet(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
             ("No connection".to_owned(), lines)
         }
     };
+    tell(painter, rect, ink, &title, lines);
+}
+
+/// That the filter leaves nothing to be seen, and where to read why.
+fn nothing_found(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
+    let Some(counts) = world.filter_counts() else { return };
+    let is_filtered = !world.settings.filter.wanted().is_empty();
+    if is_filtered && world.store.matched() == 0 && counts.matched == 0 && counts.seen > 0 {
+        let seen = format::count(counts.seen as f64);
+        let lines = vec![
+            format!("None of {seen} so far. The section Filter tells what came nearest,"),
+            "and offers what to do; Ctrl+Z takes the last change back.".to_owned(),
+        ];
+        tell(painter, rect, ink, "No path matches the filter", lines);
+    }
+}
+
+/// A title and lines in the middle of the view.
+fn tell(painter: &Painter, rect: Rect, ink: Color32, title: &str, lines: Vec<String>) {
     let centre = rect.center() - vec2(0.0, 10.0 * lines.len() as f32);
     painter.text(centre, Align2::CENTER_BOTTOM, title, FontId::proportional(22.0), ink);
     for (i, line) in lines.into_iter().enumerate() {
