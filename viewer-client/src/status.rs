@@ -66,7 +66,9 @@ pub struct Status {
     /// How long the daemon took to answer a question last, way and back.
     pub latency: Option<Duration>,
     /// When something came from the daemon last.
-    pub heard: Option<Instant>,
+    heard: Option<Instant>,
+    /// When somebody looked last whether something had come.
+    listened: Option<Instant>,
     /// The newest word to the user.
     pub notice: Option<Notice>,
 }
@@ -92,6 +94,7 @@ impl Status {
             steering: Steering::default(),
             latency: None,
             heard: None,
+            listened: None,
             notice: None,
         }
     }
@@ -101,11 +104,19 @@ impl Status {
         self.link == LinkState::Connected
     }
 
-    /// How long the daemon has said nothing although the connection stands, where that is longer than
-    /// its figures, which come every second, ever take.
-    pub fn silence(&self, now: Instant) -> Option<Duration> {
-        let heard = self.heard.filter(|_| self.is_connected())?;
-        Some(now.saturating_duration_since(heard)).filter(|silence| *silence >= SILENCE)
+    /// Notes that somebody looked whether something had come, and whether it had.
+    pub fn listen(&mut self, heard: bool, now: Instant) {
+        self.listened = Some(now);
+        if heard {
+            self.heard = Some(now);
+        }
+    }
+
+    /// How long the daemon had said nothing when somebody looked last, although the connection stands,
+    /// where that is longer than its figures, which come every second, ever take.
+    pub fn silence(&self) -> Option<Duration> {
+        let (heard, listened) = self.heard.zip(self.listened).filter(|_| self.is_connected())?;
+        Some(listened.saturating_duration_since(heard)).filter(|silence| *silence >= SILENCE)
     }
 
     /// Mutations a second as they are made now: none while the chains rest or out of reach, whatever

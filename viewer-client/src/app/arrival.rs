@@ -21,9 +21,7 @@ impl Viewer {
         let before = self.store.counts();
         let delivery = self.link.as_ref().map(Link::take).unwrap_or_default();
         let mut news = !delivery.is_empty();
-        if news {
-            self.status.heard = Some(Instant::now());
-        }
+        self.status.listen(news, Instant::now());
         self.take(delivery);
         news |= self.darkroom.collect(&mut self.settings.image, &mut self.status);
         let time = self.started.elapsed().as_secs_f64();

@@ -2,6 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use shaders::{LinePoint, role};
+
 use super::kit::Kit;
 use super::pages::PageRange;
 use super::progress::{Layer, Picture};
@@ -13,6 +15,9 @@ use crate::raster::{Canvas, Crossing};
 const GLANCE: Duration = Duration::from_millis(50);
 /// The same for later frames, of which few then draw the interface for nothing.
 const LONGEST: Duration = Duration::from_millis(150);
+
+/// Points that are drawn before the clock is looked at.
+const SLICE: usize = 4096;
 
 /// What the processor draws with, and the picture that it is at.
 #[derive(Debug, Default)]
@@ -32,6 +37,8 @@ struct Painting {
     /// What to draw of the paths, topmost first.
     steps: Vec<(Layer, PageRange)>,
     next: usize,
+    /// Points of the next step that are drawn already, from its end on.
+    drawn: usize,
     /// Frames that it has taken.
     frames: u32,
     /// The surfaces, until paths are laid over them.
@@ -79,16 +86,20 @@ impl Software {
             let (picture, mut steps) = (wanted.clone(), wanted.steps());
             steps.reverse();
             let surfaces = Some(surfaces);
-            Painting { picture, content, steps, next: 0, frames: 0, surfaces }
+            Painting { picture, content, steps, next: 0, drawn: 0, frames: 0, surfaces }
         });
         painting.frames += 1;
         let goal = LONGEST.min(painting.frames * GLANCE);
-        let Painting { picture, steps, next, .. } = &mut painting;
+        let Painting { picture, steps, next, drawn, .. } = &mut painting;
         while let Some((layer, range)) = steps.get(*next).filter(|_| started.elapsed() < goal) {
-            if let Some(points) = kit.pages.in_memory(*range) {
-                self.canvas.draw(points, &picture.uniforms, *layer, picture.crossing);
+            let points = kit.pages.in_memory(*range).unwrap_or_default();
+            let left = &points[..points.len().saturating_sub(*drawn)];
+            let newest = &left[slice_of(left)..];
+            self.canvas.draw(newest, &picture.uniforms, *layer, picture.crossing);
+            *drawn += newest.len();
+            if newest.len() == left.len() {
+                (*next, *drawn) = (*next + 1, 0);
             }
-            *next += 1;
         }
         let done = painting.next == painting.steps.len();
         self.painting = Some(painting);
@@ -122,6 +133,15 @@ impl Software {
         self.spent += started.elapsed();
         Some(Painted { target, picture, content })
     }
+}
+
+/// Where the newest paths of a page begin that are drawn at once.
+fn slice_of(points: &[LinePoint]) -> usize {
+    let mut start = points.len().saturating_sub(SLICE);
+    while start > 0 && points[start - 1].info[0] & role::LAST == 0 {
+        start -= 1;
+    }
+    start
 }
 
 /// Paths are weighed on the canvas, if they are: the target needs no room for that.
@@ -186,4 +206,28 @@ fn upload(
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
     *sheet = Some(texture);
     view
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slices_are_whole_paths_and_make_the_whole() {
+        let path = |length: usize| {
+            (0..length).map(move |i| LinePoint {
+                info: [if i + 1 == length { role::LAST } else { 0 }, 0, 0, 0],
+                ..LinePoint::default()
+            })
+        };
+        let points: Vec<_> = (0..3000).flat_map(|i| path(2 + i % 9)).collect();
+        let (mut left, mut slices) = (points.as_slice(), 0);
+        while !left.is_empty() {
+            let start = slice_of(left);
+            let begins = start == 0 || left[start - 1].info[0] == role::LAST;
+            assert!(begins && left.len() - start < SLICE + 10, "from {start} to {}", left.len());
+            (left, slices) = (&left[..start], slices + 1);
+        }
+        assert_eq!(slices, points.len().div_ceil(SLICE), "none is small but the last");
+    }
 }

@@ -21,7 +21,7 @@ impl Panel for StatusBar {
     fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
         let bar = ui.horizontal(|ui| {
             connection(ui, world, commands);
-            let answers = world.status.silence(world.now).is_none();
+            let answers = world.status.silence().is_none();
             if world.status.is_connected() && answers && world.playback.is_none() {
                 session(ui, world);
             }
@@ -53,7 +53,7 @@ fn connection(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
             if !playing {
                 ui.ctx().request_repaint_after(SILENCE);
             }
-            let silence = status.silence(world.now).filter(|_| !playing);
+            let silence = status.silence().filter(|_| !playing);
             dot(ui, if silence.is_some() { theme::BUSY } else { theme::GOOD });
             let text = match (silence, playing) {
                 (Some(silence), _) => {

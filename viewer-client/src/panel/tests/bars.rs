@@ -127,6 +127,16 @@ fn the_status_bar_tells_every_state() {
     };
     assert!(shows(&state(LinkState::Connecting), "Connecting to 127.0.0.1:50061"), "connecting");
     assert!(shows(&state(LinkState::Connected), "Connected to 127.0.0.1:50061"), "connected");
+    let mut silent = Stage::new(status::StatusBar);
+    silent.status.link = LinkState::Connected;
+    let start = Instant::now();
+    for (heard, seconds, is_told) in [(true, 0, false), (false, 2, false), (false, 7, true)] {
+        silent.status.listen(heard, start + Duration::from_secs(seconds));
+        assert_eq!(silent.status.silence().is_some(), is_told, "after {seconds} s");
+    }
+    let mut silent = silent.harness();
+    silent.run_steps(3);
+    assert!(shows(&silent, "No answer from 127.0.0.1:50061 for 7 s"), "it does not answer");
     let retry_at = Instant::now() + Duration::from_secs(90);
     let mut lost = state(LinkState::Disconnected { reason: "gone".to_owned(), retry_at });
     assert!(shows(&lost, "Disconnected: gone; retrying in"), "lost, with its reason");
