@@ -115,7 +115,9 @@ impl Status {
     /// How long the daemon had said nothing when somebody looked last, although the connection stands,
     /// where that is longer than its figures, which come every second, ever take.
     pub fn silence(&self) -> Option<Duration> {
-        let (heard, listened) = self.heard.zip(self.listened).filter(|_| self.is_connected())?;
+        // Figures come once the chains have begun; until then a daemon looks for light.
+        let speaks = self.is_connected() && self.statistics.is_some();
+        let (heard, listened) = self.heard.zip(self.listened).filter(|_| speaks)?;
         Some(listened.saturating_duration_since(heard)).filter(|silence| *silence >= SILENCE)
     }
 

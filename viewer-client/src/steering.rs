@@ -65,8 +65,12 @@ impl Steering {
                 }));
             }
             Notice::Reply(OrderReply { error: Some(error), .. }) => self.remark(Err(error)),
+            // What was refused before is no news any more.
+            Notice::Reply(OrderReply { error: None, .. }) => {
+                self.remark.take_if(|remark| remark.is_err());
+            }
             // The viewer keeps these with the path that they are about.
-            Notice::Reply(OrderReply { error: None, .. }) | Notice::Detail(_) => {}
+            Notice::Detail(_) => {}
         }
     }
 

@@ -149,9 +149,11 @@ impl Viewer {
         if let Some(error) = &reply.error {
             self.status.say(Err(format!("The filter is refused: {error}")));
         } else {
-            // What came before was chosen by another filter.
             self.filter_in_force = reply.revision;
-            self.store.clear();
+            // What came before was chosen by another filter, and comes again unless it is held.
+            if !self.settings.cloud.frozen {
+                self.store.clear();
+            }
         }
         self.status.filter = Some(reply);
     }

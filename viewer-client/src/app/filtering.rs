@@ -10,7 +10,7 @@ impl Viewer {
     /// Applies the filter to the paths that are held.
     pub(super) fn judge(&mut self) {
         let filter = self.compiled();
-        if filter.is_none() && self.playback.is_none() {
+        if filter.is_none() && self.playback.is_none() && !self.settings.cloud.frozen {
             // Only the daemon knows what these names mean, and sends what they want.
             self.store.clear();
         }

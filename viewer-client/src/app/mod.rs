@@ -341,6 +341,10 @@ impl Viewer {
         if self.refuse_to_steer() {
             return;
         }
+        if matches!(order, common::Order::Explorer(_)) {
+            // What comes of it is at the end of the timeline.
+            self.scrub = None;
+        }
         self.orders += 1;
         let sent = self.link.as_ref().is_some_and(|link| link.order(self.orders, order));
         if !sent {

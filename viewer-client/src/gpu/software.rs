@@ -78,7 +78,7 @@ impl Software {
         (wanted, content): (&Picture, u64),
         spare: &mut Option<Target>,
     ) -> bool {
-        let started = Instant::now();
+        let begun = Instant::now();
         let painting = self.painting.take().filter(|p| p.picture.same_view(wanted));
         let mut painting = painting.unwrap_or_else(|| {
             let (surfaces, depths) = draw_surfaces(kit, wanted, spare.take());
@@ -89,9 +89,11 @@ impl Software {
             Painting { picture, content, steps, next: 0, drawn: 0, frames: 0, surfaces }
         });
         painting.frames += 1;
+        // However long surfaces took: a view that moves must not lose its paths.
+        let started = Instant::now();
         let goal = LONGEST.min(painting.frames * GLANCE);
         let Painting { picture, steps, next, drawn, .. } = &mut painting;
-        while let Some((layer, range)) = steps.get(*next).filter(|_| started.elapsed() < goal) {
+        while let Some((layer, range)) = steps.get(*next) {
             let points = kit.pages.in_memory(*range).unwrap_or_default();
             let left = &points[..points.len().saturating_sub(*drawn)];
             let newest = &left[slice_of(left)..];
@@ -100,10 +102,13 @@ impl Software {
             if newest.len() == left.len() {
                 (*next, *drawn) = (*next + 1, 0);
             }
+            if started.elapsed() >= goal {
+                break;
+            }
         }
         let done = painting.next == painting.steps.len();
         self.painting = Some(painting);
-        self.spent += started.elapsed();
+        self.spent += begun.elapsed();
         done
     }
 

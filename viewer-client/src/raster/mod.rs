@@ -61,12 +61,14 @@ pub struct Canvas {
     depths: Vec<f32>,
     /// Marks of the points at hand, a list a thread.
     marks: Vec<Vec<Mark>>,
+    threads: usize,
 }
 
 impl Canvas {
     /// Begins a picture of `width` and `height` pixels, with how near surfaces are at each of them, or
     /// nothing where there are none.
     pub fn begin(&mut self, [width, height]: [u32; 2], crossing: Crossing, depths: Vec<f32>) {
+        self.threads = thread::available_parallelism().map_or(1, NonZero::get);
         self.width = width as usize;
         let len = self.width * height as usize;
         self.pixels.clear();
@@ -85,29 +87,17 @@ impl Canvas {
         layer: Layer,
         crossing: Crossing,
     ) {
-        let threads = thread::available_parallelism().map_or(1, NonZero::get);
-        self.draw_by(threads, points, frame, layer, crossing);
-    }
-
-    fn draw_by(
-        &mut self,
-        threads: usize,
-        points: &[LinePoint],
-        frame: &FrameUniforms,
-        layer: Layer,
-        crossing: Crossing,
-    ) {
         if self.pixels.is_empty() || points.is_empty() {
             return;
         }
         let shader = Shader { frame };
-        self.mark(points, Marker::new(shader, layer), threads);
-        self.fill(Brush { shader, layer, crossing }, threads);
+        self.mark(points, Marker::new(shader, layer));
+        self.fill(Brush { shader, layer, crossing });
     }
 
-    fn mark(&mut self, points: &[LinePoint], marker: Marker<'_>, threads: usize) {
-        let share = points.len().div_ceil(threads);
-        self.marks.resize_with(threads, Vec::new);
+    fn mark(&mut self, points: &[LinePoint], marker: Marker<'_>) {
+        let share = points.len().div_ceil(self.threads);
+        self.marks.resize_with(self.threads, Vec::new);
         thread::scope(|scope| {
             for (i, marks) in self.marks.iter_mut().enumerate() {
                 // One more point, at which the last segment ends.
@@ -121,10 +111,10 @@ impl Canvas {
         });
     }
 
-    fn fill(&mut self, brush: Brush<'_>, threads: usize) {
-        let Self { width, pixels, open, weights, depths, marks } = self;
+    fn fill(&mut self, brush: Brush<'_>) {
+        let Self { width, pixels, open, weights, depths, marks, threads } = self;
         let tiles = width.div_ceil(TILE);
-        let tile_rows = (open.len() / tiles).div_ceil(threads * BANDS);
+        let tile_rows = (open.len() / tiles).div_ceil(*threads * BANDS);
         let rows = tile_rows * TILE;
         let size = rows * *width;
         let bands = pixels.chunks_mut(size).enumerate();
@@ -132,9 +122,9 @@ impl Canvas {
         let mut weights = weights.chunks_mut(size);
         let mut depths = depths.chunks(size);
         let mut shares: Vec<Vec<Band<'_>>> = Vec::new();
-        shares.resize_with(threads, Vec::new);
+        shares.resize_with(*threads, Vec::new);
         for (i, pixels) in bands {
-            shares[i % threads].push(Band {
+            shares[i % *threads].push(Band {
                 top: i * rows,
                 width: *width,
                 pixels,

@@ -167,9 +167,10 @@ fn neither_threads_nor_parts_change_a_pixel() {
         let picture = |threads: usize, parts: usize| {
             let mut canvas = Canvas::default();
             canvas.begin(SIZE, crossing, Vec::new());
+            canvas.threads = threads;
             for layer in [Layer::Dots, Layer::Visible] {
                 for part in points.chunks(points.len() / parts).rev() {
-                    canvas.draw_by(threads, part, &frame, layer, crossing);
+                    canvas.draw(part, &frame, layer, crossing);
                 }
             }
             canvas.finished()

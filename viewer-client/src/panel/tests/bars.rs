@@ -129,6 +129,7 @@ fn the_status_bar_tells_every_state() {
     assert!(shows(&state(LinkState::Connected), "Connected to 127.0.0.1:50061"), "connected");
     let mut silent = Stage::new(status::StatusBar);
     silent.status.link = LinkState::Connected;
+    silent.status.statistics(common::Statistics::default());
     let start = Instant::now();
     for (heard, seconds, is_told) in [(true, 0, false), (false, 2, false), (false, 7, true)] {
         silent.status.listen(heard, start + Duration::from_secs(seconds));
