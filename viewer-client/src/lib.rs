@@ -9,6 +9,7 @@ pub mod bench;
 pub mod camera;
 pub mod cli;
 pub mod command;
+pub mod value;
 pub mod connection;
 pub mod darkroom;
 pub mod desk;

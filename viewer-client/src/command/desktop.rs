@@ -1,0 +1,23 @@
+//! `connect`, `share`, `screenshot`, `copy`: what goes beyond the window.
+
+use super::table::{forms, limits, table};
+use crate::value::{Line, Source};
+
+/// Stands for the address of the daemon inside this program.
+pub const HOME: &str = "home";
+
+table! {
+    /// What goes beyond the window.
+    pub enum DesktopCommand in Desktop;
+
+    commands {
+        /// Watches another daemon, follows a link, or goes back to the own daemon.
+        Connect "connect" (address: String [Line::Any("HOST:PORT|LINK|home")]);
+        /// Copies a link that restores camera, filter, selection and looks.
+        Share "share";
+        /// Writes the whole window as an image.
+        Screenshot "screenshot" (file: String [Line::Any("FILE.png")]);
+        /// Copies as text what a panel says, the state of the session, or all settings as commands.
+        Copy "copy" (source: Source);
+    }
+}
