@@ -153,3 +153,6 @@ fn unknown(mut words: Words<'_>) -> CommandError {
     let remedy = near.map_or_else(help, |form| format!("did you mean `{}`?", form.text()));
     CommandError::Unknown { found, remedy }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,7 @@
 //! `path ...`: the path that is looked at.
 
 use super::table::{forms, limits, table};
-use crate::value::{Aim, ShownPath, VertexStep, range};
+use crate::value::{Pointer, ShownPath, VertexStep, range};
 
 table! {
     /// What may be done with a path.
@@ -9,7 +9,7 @@ table! {
 
     commands {
         /// Selects the path at tangents from the view direction; again, the next one there.
-        Pick "path pick" (aim: Aim);
+        Pick "path pick" (aim: Pointer);
         /// Selects a path at which a chain stayed long; the longest stay is 0.
         Stay "path stay" (rank: u8 [range(0, u8::MAX)]);
         /// Selects a path that is written out, as in a link to a view, held or not.

@@ -47,13 +47,19 @@ pub struct Traits {
     pub is_linked: bool,
     /// It opens or closes what is before the eyes for a moment, so that there is nothing to undo.
     pub is_passing: bool,
+    /// It sets something that is remembered from one day to the next.
+    pub is_kept: bool,
 }
 
 impl Traits {
-    pub(super) const NONE: Self = Self { is_linked: false, is_passing: false };
+    pub(super) const NONE: Self = Self { is_linked: false, is_passing: false, is_kept: false };
 
     pub(super) const fn linked(self) -> Self {
         Self { is_linked: true, ..self }
+    }
+
+    pub(super) const fn kept(self) -> Self {
+        Self { is_kept: true, ..self }
     }
 
     pub(super) const fn passing(self) -> Self {
@@ -75,7 +81,7 @@ impl Form {
         for parameter in self.parameters {
             let form = (parameter.form)(parameter.name);
             match (parameter.shape)() {
-                Shape::Number(range) if !self.label.is_empty() => text += &format!(" ({range})"),
+                Shape::Number(range) if self.is_setting() => text += &format!(" ({range})"),
                 Shape::Choice(words) if form == parameter.name.to_uppercase() => {
                     text += &format!("; {form} is one of {}", words.join(", "));
                 }
@@ -85,17 +91,17 @@ impl Form {
         text
     }
 
-    /// What it does, in one line.
-    pub fn meaning(&self) -> String {
-        self.documentation.split_whitespace().collect::<Vec<_>>().join(" ")
-    }
-
     /// The range of its number, if it has one.
     pub fn range(&self) -> Option<Range<f64>> {
         self.parameters.iter().find_map(|parameter| match (parameter.shape)() {
             Shape::Number(range) => Some(range),
             Shape::Choice(_) | Shape::Other => None,
         })
+    }
+
+    /// True for the commands that set something of the viewer.
+    pub fn is_setting(&self) -> bool {
+        !self.label.is_empty()
     }
 
     /// True for commands of this form.

@@ -22,7 +22,7 @@ pub use cloud::{Blend, ColorMode, ColorScale, Marks};
 pub use filter::{MOST_SELECTORS, Sphere, kind_name};
 pub use image::{Channel, Exposure, Layer, ToneCurve};
 pub use number::{Axes, Number, Range, axes, range};
-pub use path::{Aim, ShownPath, VertexStep};
+pub use path::{Pointer, ShownPath, VertexStep};
 pub use scene::{ClipSide, Handles, Light, Lighting, Shading};
 pub use switch::Switch;
 pub use text::{Line, name};

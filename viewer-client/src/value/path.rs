@@ -52,14 +52,14 @@ impl Value for VertexStep {
 /// All three are tangents of angles from the view direction, so that neither the size nor the shape
 /// of the window matters.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Aim {
+pub struct Pointer {
     /// To the right and upwards.
     pub at: [f32; 2],
     /// How far off, in any direction.
     pub reach: f32,
 }
 
-impl Aim {
+impl Pointer {
     /// True when the user points at the same thing, as far as a hand can.
     pub fn is_near(self, other: Self) -> bool {
         let off = Vec2::from(self.at).distance(Vec2::from(other.at));
@@ -72,7 +72,7 @@ impl Aim {
     };
 }
 
-impl Value for Aim {
+impl Value for Pointer {
     type Limits = ();
 
     fn form(name: &str, (): &()) -> String {
