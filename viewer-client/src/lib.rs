@@ -1,8 +1,8 @@
 //! The viewer: draws the scene, its light paths and the picture they make.
 //!
 //! Data comes in through [`source`], is drawn by [`draw`] and [`panel`], and everything the user does
-//! is a [`command`]. From the ground up: [`value`], [`command`] and [`settings`], [`camera`], [`imaging`],
-//! [`source`], [`draw`], [`world`], [`keys`] and [`panel`], [`app`].
+//! is a [`command`]. From the ground up: [`value`], [`command`], [`settings`], [`camera`],
+//! [`imaging`], [`source`], [`draw`], [`world`], [`keys`], [`panel`], [`app`].
 
 pub mod app;
 pub mod camera;

@@ -1,4 +1,4 @@
-//! From what is held to a picture: the eye, what lies under the cursor, and two ways to draw.
+//! From what is held to a picture: what lies under the cursor, and two ways to draw.
 
 pub mod gpu;
 pub mod pick;
