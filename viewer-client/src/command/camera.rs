@@ -1,6 +1,6 @@
 //! `camera ...`: how the camera of the view moves.
 
-use super::table::{forms, limits, table};
+use super::table::table;
 use crate::value::{Axes, Range, Side, Switch, Viewpoint, axes, range};
 
 const DEGREES: Range<f32> = range(-3600.0, 3600.0);
@@ -12,31 +12,31 @@ const POINT: Axes<f32, 3> = axes(["X", "Y", "Z"], range(-1e6, 1e6));
 
 table! {
     /// What the camera of the view may do.
-    #[derive(Copy)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
     pub enum CameraCommand in Camera;
 
     commands {
         /// Turns around the pivot, in degrees.
-        Orbit "camera orbit" (right: f32 [DEGREES], up: f32 [DEGREES]), linked;
+        Orbit "camera orbit" (right: f32 [DEGREES], up: f32 [DEGREES]), Linked;
         /// Shifts the picture, in heights of the viewport.
-        Pan "camera pan" (right: f32 [STEP], up: f32 [STEP]), linked;
+        Pan "camera pan" (right: f32 [STEP], up: f32 [STEP]), Linked;
         /// Comes closer to a point of the viewport, in half heights of it from its centre.
-        Zoom "camera zoom" (factor: f32 [range(0.001, 1000.0)], at: [f32; 2] [AT]), linked;
+        Zoom "camera zoom" (factor: f32 [range(0.001, 1000.0)], at: [f32; 2] [AT]), Linked;
         /// Turns the head, in degrees.
-        Look "camera look" (right: f32 [DEGREES], up: f32 [DEGREES]), linked;
+        Look "camera look" (right: f32 [DEGREES], up: f32 [DEGREES]), Linked;
         /// Steps, in sizes of the scene.
-        Move "camera move" (step: [f32; 3] [STEPS]), linked;
+        Move "camera move" (step: [f32; 3] [STEPS]), Linked;
         /// Flies instead of orbiting.
-        Fly "camera fly" (switch: Switch), linked;
+        Fly "camera fly" (switch: Switch), Linked;
         /// Looks through the render camera.
-        Through "camera through" (switch: Switch), linked;
+        Through "camera through" (switch: Switch), Linked;
         /// Turns around a point from now on, in scene units, from no farther away.
-        Focus "camera focus" (point: [f32; 3] [POINT], distance: f32 [range(0.01, 1e6)]), linked;
+        Focus "camera focus" (point: [f32; 3] [POINT], distance: f32 [range(0.01, 1e6)]), Linked;
         /// Shows the whole scene.
-        Frame "camera frame", linked;
+        Frame "camera frame", Linked;
         /// Stands where a link says, in scene units and degrees.
-        Place "camera place" (viewpoint: Viewpoint), linked;
+        Place "camera place" (viewpoint: Viewpoint), Linked;
         /// Shows the whole scene from one side.
-        View "camera view" (side: Side), linked;
+        View "camera view" (side: Side), Linked;
     }
 }

@@ -1,51 +1,50 @@
 //! `cloud ...`: which paths are on screen, and how they are drawn.
 
-use super::table::{forms, limits, table};
-use crate::value::{
-    Blend, ColorMode, ColorScale, Marks, Range, range,
-};
+use super::table::table;
+use crate::value::{Blend, ColorMode, ColorScale, Marks, Range, range};
 
 const SHARE: Range<f32> = range(0.0, 1.0).decimals(2);
 const MANY: Range<u32> = range(0, 10_000_000).log();
 
 table! {
     /// What may be done to the paths on screen.
-    #[derive(Copy)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
     pub enum CloudCommand in Cloud;
 
     /// How paths are drawn.
+    #[derive(Clone, Debug, PartialEq)]
     pub struct CloudSettings {
         /// Holds the cloud still; the chains go on.
         Freeze "cloud freeze" (switch: bool) sets frozen = false, "Freeze";
         /// What the colour of a path says; the legend explains it.
-        Color "cloud color" (mode: ColorMode) sets color = ColorMode::Radiance, "Colour", linked;
+        Color "cloud color" (mode: ColorMode) sets color = ColorMode::Radiance, "Colour", Linked;
         /// Whether equal factors or equal differences make equal steps of colour.
-        Scale "cloud scale" (scale: ColorScale) sets scale = ColorScale::Log, "Scale", linked;
+        Scale "cloud scale" (scale: ColorScale) sets scale = ColorScale::Log, "Scale", Linked;
         /// What is drawn of a path.
-        Marks "cloud marks" (marks: Marks) sets marks = Marks::Lines, "Draw", linked;
+        Marks "cloud marks" (marks: Marks) sets marks = Marks::Lines, "Draw", Linked;
         /// What becomes of paths that cross on the screen.
-        Blend "cloud blend" (blend: Blend) sets blend = Blend::Newest, "Crossing", linked;
+        Blend "cloud blend" (blend: Blend) sets blend = Blend::Newest, "Crossing", Linked;
         /// Width of the lines on screen, whatever their distance.
         Width "cloud width" (pixels: f32 [range(0.25, 20.0).log().decimals(2).unit("px")])
-            sets width = 1.5, "Width", linked;
+            sets width = 1.5, "Width", Linked;
         /// Opacity of the newest, brightest path.
-        Opacity "cloud opacity" (x: f32 [SHARE]) sets opacity = 0.55, "Opacity", linked;
+        Opacity "cloud opacity" (x: f32 [SHARE]) sets opacity = 0.55, "Opacity", Linked;
         /// How much is seen of the parts that lie behind surfaces.
-        Hidden "cloud hidden" (x: f32 [SHARE]) sets hidden = 0.08, "Hidden", linked;
+        Hidden "cloud hidden" (x: f32 [SHARE]) sets hidden = 0.08, "Hidden", Linked;
         /// How much distance dims paths, so that near ones stand out.
-        Cue "cloud cue" (x: f32 [SHARE]) sets cue = 0.0, "Depth cue", linked;
+        Cue "cloud cue" (x: f32 [SHARE]) sets cue = 0.0, "Depth cue", Linked;
         /// How much is seen of the paths that the filter leaves out; 0 hides them.
-        Dim "cloud dim" (x: f32 [SHARE]) sets dim = 0.1, "Left out", linked;
+        Dim "cloud dim" (x: f32 [SHARE]) sets dim = 0.1, "Left out", Linked;
         /// After how many newer paths a path has faded to 1/e.
         Fade "cloud fade" (paths: f32 [range(1.0, 1e7).log()])
-            sets fade = 500.0, "Fade after", linked;
+            sets fade = 500.0, "Fade after", Linked;
         /// Radius of the dots at inner vertices; 0 for none.
         Dots "cloud dots" (pixels: f32 [range(0.0, 20.0).decimals(1).unit("px")])
-            sets dots = 0.0, "Dots", linked;
+            sets dots = 0.0, "Dots", Linked;
         /// Tints the start of paths, on the light, amber, and their end, at the camera, blue.
-        Ends "cloud ends" (switch: bool) sets ends = true, "Tint start and end", linked;
+        Ends "cloud ends" (switch: bool) sets ends = true, "Tint start and end", Linked;
         /// How many of the newest paths are drawn at once (draw limit of 2014).
-        Shown "cloud shown" (paths: u32 [MANY]) sets shown = 2500, "Draw", linked;
+        Shown "cloud shown" (paths: u32 [MANY]) sets shown = 2500, "Drawn", Linked;
         /// Memory for paths, graphics memory included; when it is full, the oldest go.
         Budget "cloud budget" (mib: u32 [range(8, 65_536).log().unit("MiB")])
             sets budget_mib = 128, "Keep";

@@ -1,6 +1,6 @@
 //! `connect`, `share`, `screenshot`, `copy`: what goes beyond the window.
 
-use super::table::{forms, limits, table};
+use super::table::table;
 use crate::value::{Line, Source};
 
 /// Stands for the address of the daemon inside this program.
@@ -8,6 +8,7 @@ pub const HOME: &str = "home";
 
 table! {
     /// What goes beyond the window.
+    #[derive(Clone, Debug, PartialEq, Eq)]
     pub enum DesktopCommand in Desktop;
 
     commands {

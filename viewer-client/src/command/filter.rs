@@ -1,6 +1,6 @@
 //! `filter ...`: which paths are shown.
 
-use super::table::{forms, limits, table};
+use super::table::table;
 use crate::value::{Line, MOST_SELECTORS, Range, Sphere, Switch, range};
 
 /// Most kept filters.
@@ -10,19 +10,20 @@ const NUMBER: Range<u32> = range(0, MOST_SELECTORS - 1);
 
 table! {
     /// What may be done to the filter; `docs/FILTERS.md` has the grammar of its text.
+    #[derive(Clone, Debug, PartialEq)]
     pub enum FilterCommand in Filter;
 
     commands {
         /// Shows the paths that a filter wants, beside the selectors.
-        Set "filter set" (text: String [Line::Filter]), linked;
+        Set "filter set" (text: String [Line::Filter]), Linked;
         /// Shows all paths: neither a text nor a selector is left.
-        Clear "filter clear", linked;
+        Clear "filter clear", Linked;
         /// Whether the filter holds at all.
-        Enable "filter enable" (switch: Switch), linked;
+        Enable "filter enable" (switch: Switch), Linked;
         /// Shows the paths that the filter would leave out instead.
-        Invert "filter invert" (switch: Switch), linked;
+        Invert "filter invert" (switch: Switch), Linked;
         /// Selects paths by a sphere, in the file's units.
-        Add "filter add" (sphere: Sphere), linked;
+        Add "filter add" (sphere: Sphere), Linked;
         /// Moves a selector, counted from 0.
         Move "filter move" (number: u32 [NUMBER], place: [f64; 4] [Sphere::PLACE]);
         /// Shows the handles of a selector.

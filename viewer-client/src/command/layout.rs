@@ -1,11 +1,11 @@
 //! `panel`, `fold`, `arrange`, `width`, `usual`: where panels are.
 
-use super::table::{forms, limits, table};
+use super::table::table;
 use crate::value::{Move, PanelName, Switch, WIDTHS, WindowSide};
 
 table! {
     /// What may be done to the panels at the sides of the window.
-    #[derive(Copy)]
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum LayoutCommand in Layout;
 
     commands {

@@ -27,7 +27,7 @@ pub use path::PathCommand;
 pub use play::PlayCommand;
 pub use scene::{SceneCommand, SceneSettings};
 pub use session::SessionCommand;
-pub use table::{Form, Setting, Traits};
+pub use table::{Form, Setting, Trait};
 pub use window::{WindowCommand, WindowSettings};
 
 use std::fmt;
@@ -141,9 +141,9 @@ fn find(words: &mut Words<'_>) -> Result<&'static Form, CommandError> {
 
 /// The complaint about words that begin no command, with what they may have meant.
 fn unknown(mut words: Words<'_>) -> CommandError {
-    let Some(first) = words.next() else { return CommandError::Nothing };
+    let Some(first) = words.word() else { return CommandError::Nothing };
     let is_group = forms().any(|form| form.words.starts_with(&format!("{first} ")));
-    let found = match words.next().filter(|_| is_group) {
+    let found = match words.word().filter(|_| is_group) {
         Some(second) => format!("{first} {second}"),
         None => first.to_owned(),
     };

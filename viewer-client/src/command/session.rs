@@ -1,10 +1,10 @@
 //! `undo`, `quit` and others: the program as a whole.
 
-use super::table::{forms, limits, table};
+use super::table::table;
 
 table! {
     /// What concerns the program as a whole.
-    #[derive(Copy)]
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum SessionCommand in Session;
 
     commands {

@@ -7,7 +7,7 @@ use common::{
 };
 
 use super::Command;
-use super::table::{forms, limits};
+use super::table::forms;
 use crate::value::{Range, range};
 
 const ANY: Range<u64> = range(0, u64::MAX);
@@ -16,7 +16,7 @@ forms! {
     /// Makes a path the explorer's current one.
     "explorer seed" (seed: Seed) => { Command::Order(Order::Explorer(Explorer::Seed(seed))) } "";
     /// Lets the explorer take so many steps a second.
-    "explorer play" (rate: f32 [range(MIN_RATE, MAX_RATE)])
+    "explorer play" (rate: f32 [range(MIN_RATE, MAX_RATE).log().decimals(2).unit("/s")])
         => { Command::Order(Order::Explorer(Explorer::Play(rate))) } "";
     /// Lets the explorer stand still.
     "explorer pause" () => { Command::Order(Order::Explorer(Explorer::Pause)) } "";

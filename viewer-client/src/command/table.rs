@@ -24,8 +24,7 @@ pub struct Form {
     pub(super) parameters: &'static [Parameter],
     /// What panels call it; blank where it sets nothing.
     pub label: &'static str,
-    /// Who may give it, and what becomes of it.
-    pub traits: Traits,
+    pub(super) traits: &'static [Trait],
     pub(super) read: fn(&mut Words<'_>) -> Result<Command, CommandError>,
     /// The texts of its parameters, if the command is of this form.
     pub(super) write: fn(&Command) -> Option<Vec<String>>,
@@ -34,37 +33,21 @@ pub struct Form {
 }
 
 /// A parameter of a form.
-pub struct Parameter {
+pub(super) struct Parameter {
     pub(super) name: &'static str,
     pub(super) form: fn(&str) -> String,
     pub(super) shape: fn() -> Shape,
 }
 
-/// Who may give a command, and what becomes of it.
+/// Something that is special about a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Traits {
+pub enum Trait {
     /// A link to a view may hold it: it looks, and does nothing else.
-    pub is_linked: bool,
+    Linked,
     /// It opens or closes what is before the eyes for a moment, so that there is nothing to undo.
-    pub is_passing: bool,
+    Passing,
     /// It sets something that is remembered from one day to the next.
-    pub is_kept: bool,
-}
-
-impl Traits {
-    pub(super) const NONE: Self = Self { is_linked: false, is_passing: false, is_kept: false };
-
-    pub(super) const fn linked(self) -> Self {
-        Self { is_linked: true, ..self }
-    }
-
-    pub(super) const fn kept(self) -> Self {
-        Self { is_kept: true, ..self }
-    }
-
-    pub(super) const fn passing(self) -> Self {
-        Self { is_passing: true, ..self }
-    }
+    Kept,
 }
 
 impl Form {
@@ -81,9 +64,11 @@ impl Form {
         for parameter in self.parameters {
             let form = (parameter.form)(parameter.name);
             match (parameter.shape)() {
-                Shape::Number(range) if self.is_setting() => text += &format!(" ({range})"),
+                Shape::Number(range) if self.is_setting() => {
+                    text = format!("{text} ({range})");
+                }
                 Shape::Choice(words) if form == parameter.name.to_uppercase() => {
-                    text += &format!("; {form} is one of {}", words.join(", "));
+                    text = format!("{text}; {form} is one of {}", words.join(", "));
                 }
                 Shape::Number(_) | Shape::Choice(_) | Shape::Other => {}
             }
@@ -97,6 +82,11 @@ impl Form {
             Shape::Number(range) => Some(range),
             Shape::Choice(_) | Shape::Other => None,
         })
+    }
+
+    /// True for commands of which this is special.
+    pub fn is(&self, special: Trait) -> bool {
+        self.traits.contains(&special)
     }
 
     /// True for the commands that set something of the viewer.
@@ -159,17 +149,17 @@ macro_rules! forms {
                 parameters: &[$(
                     $crate::command::table::Parameter {
                         name: stringify!($parameter),
-                        form: |name| <$type as $crate::value::Value>::form(name, limits!($($limits)?)),
-                        shape: || <$type as $crate::value::Value>::shape(limits!($($limits)?)),
+                        form: |name| <$type as $crate::value::Value>::form(name, $crate::command::table::limits!($($limits)?)),
+                        shape: || <$type as $crate::value::Value>::shape($crate::command::table::limits!($($limits)?)),
                     }
                 ),*],
                 label: $label,
-                traits: $crate::command::table::Traits::NONE $(.$trait())*,
+                traits: &[$($crate::command::table::Trait::$trait),*],
                 read: |_words| {
                     $(
                         let name = stringify!($parameter);
                         let $parameter =
-                            <$type as $crate::value::Value>::read(_words, name, limits!($($limits)?))?;
+                            <$type as $crate::value::Value>::read(_words, name, $crate::command::table::limits!($($limits)?))?;
                     )*
                     Ok($($command)+)
                 },
@@ -177,8 +167,8 @@ macro_rules! forms {
                     let $($command)+ = command else { return None };
                     Some(vec![$($crate::value::Value::text($parameter)),*])
                 },
-                examples: || forms!(@examples { $($command)+ }
-                    $($parameter : $type, limits!($($limits)?)),*),
+                examples: || $crate::command::table::forms!(@examples { $($command)+ }
+                    $($parameter : $type, $crate::command::table::limits!($($limits)?)),*),
             }
         ),+];
     };
@@ -215,13 +205,12 @@ macro_rules! table {
         )*}
     ) => {
         $(#[$meta])*
-        #[derive(Clone, Debug, PartialEq)]
         pub enum $name {
             $( $(#[doc = $doc])+ $variant(<$type as $crate::value::Settable>::Change), )+
             $( $(#[doc = $command_doc])+ $command $(($($operand_type),+))?, )*
         }
 
-        forms! {
+        $crate::command::table::forms! {
             $(
                 $(#[doc = $doc])+
                 $words $(| $alias)*
@@ -237,8 +226,6 @@ macro_rules! table {
         }
 
         $(#[$struct_meta])*
-        #[derive(Clone, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
-        #[serde(default)]
         pub struct $settings {
             $( $(#[doc = $doc])+ pub $field: $type, )+
         }
@@ -288,12 +275,11 @@ macro_rules! table {
         )+}
     ) => {
         $(#[$meta])*
-        #[derive(Clone, Debug, PartialEq)]
         pub enum $name {
             $( $(#[doc = $doc])+ $variant $(($($type),+))?, )+
         }
 
-        forms! {$(
+        $crate::command::table::forms! {$(
             $(#[doc = $doc])+
             $words $(| $alias)*
             ( $($($parameter : $type $([ $limits ])?),+)? )

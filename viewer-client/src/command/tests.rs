@@ -26,7 +26,8 @@ fn every_command_survives_its_text() {
 
 #[test]
 fn no_two_forms_begin_alike() {
-    let names: Vec<&str> = forms().flat_map(|f| f.aliases.iter().copied().chain([f.words])).collect();
+    let names: Vec<&str> =
+        forms().flat_map(|f| f.aliases.iter().copied().chain([f.words])).collect();
     let distinct: BTreeSet<&str> = names.iter().copied().collect();
     assert_eq!(names.len(), distinct.len(), "{names:?}");
     for form in forms() {

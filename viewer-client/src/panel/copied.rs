@@ -3,18 +3,20 @@
 use common::Role;
 
 use super::filter::found;
-use crate::command::{CloudCommand, Command, PanelName, SceneCommand, Source, Switch};
-use crate::format;
+use crate::command::Command;
 use crate::imaging::Comparison;
-use crate::status::LinkState;
+use crate::source::status::LinkState;
+use crate::value::format;
+use crate::value::{PanelName, Source};
 use crate::world::World;
 
 /// The text of a part of the window; blank where it has nothing to say.
 pub fn text(world: &World<'_>, source: Source) -> String {
     match source {
         Source::Status => status(world),
-        Source::Panel(PanelName::Cloud) => cloud(world),
-        Source::Panel(PanelName::Scene) => scene(world),
+        Source::Settings => script(world.settings.commands()),
+        Source::Panel(PanelName::Cloud) => script(world.settings.cloud.commands()),
+        Source::Panel(PanelName::Scene) => script(world.settings.scene.commands()),
         Source::Panel(PanelName::Filter) => filter(world),
         Source::Panel(PanelName::Image) => image(world),
         Source::Panel(PanelName::Path) => {
@@ -75,42 +77,6 @@ fn script(commands: impl IntoIterator<Item = Command>) -> String {
     text
 }
 
-fn cloud(world: &World<'_>) -> String {
-    use CloudCommand as C;
-    let cloud = &world.settings.cloud;
-    let commands = [
-        C::Color(cloud.color),
-        C::Scale(cloud.scale),
-        C::Marks(cloud.marks),
-        C::Width(cloud.width),
-        C::Opacity(cloud.opacity),
-        C::Hidden(cloud.hidden),
-        C::Fade(cloud.fade),
-        C::Shown(cloud.shown),
-        C::Budget(cloud.budget_mib),
-        C::Ends(Switch::to(cloud.ends)),
-        C::Dots(cloud.dots),
-        C::Cue(cloud.cue),
-        C::Dim(cloud.dim),
-    ];
-    script(commands.map(Command::Cloud))
-}
-
-fn scene(world: &World<'_>) -> String {
-    use SceneCommand as S;
-    let scene = &world.settings.scene;
-    let commands = [
-        S::Shading(scene.shading),
-        S::Opacity(scene.opacity),
-        S::Cutaway(Switch::to(scene.cutaway)),
-        S::Camera(Switch::to(scene.aids.camera)),
-        S::Grid(Switch::to(scene.aids.grid)),
-        S::Clip(scene.clip),
-        S::Cut(scene.cut),
-    ];
-    script(commands.map(Command::Scene))
-}
-
 /// The whole filter, what it found, and what each condition lets through.
 fn filter(world: &World<'_>) -> String {
     let mut text = String::new();
@@ -135,7 +101,7 @@ fn image(world: &World<'_>) -> String {
     line!(text, "pixels\t{width} × {height}");
     let effort = world.film.steps() as f64 / (width * height).max(1) as f64;
     line!(text, "mutations a pixel\t{effort:.1}");
-    line!(text, "exposure\t{} EV", world.settings.image.exposure);
+    line!(text, "exposure\t{} EV", world.settings.image.exposure.stops());
     let Some(reference) = world.reference else { return text };
     line!(text, "reference\t{}", reference.name);
     if let Some(comparison) = Comparison::of(world.film, reference) {

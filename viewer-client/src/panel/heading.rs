@@ -8,10 +8,11 @@ use egui::{Align, Button, Grid, Label, Layout, Response, RichText, Sense, Ui, ve
 
 use super::sheets;
 use super::widgets::scrolling;
-use crate::command::{Command, DeskCommand, LayoutCommand, Move, PanelName, Source, Switch};
+use crate::command::{Command, DesktopCommand, LayoutCommand};
 use crate::keys::{bindings, key_name};
 use crate::settings::Layout as Settled;
-use crate::theme;
+use crate::value::theme;
+use crate::value::{Move, PanelName, Source, Switch};
 use crate::world::World;
 
 /// Shows the heading of a section.
@@ -38,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, name: PanelName, world: &World<'_>, commands: &m
         });
     });
     if copy {
-        commands.push(Command::Desk(DeskCommand::Copy(Source::Panel(name))));
+        commands.push(Command::Desktop(DesktopCommand::Copy(Source::Panel(name))));
     }
     let line = ui.visuals().widgets.noninteractive.bg_stroke;
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 5.0), Sense::hover());
@@ -105,7 +106,7 @@ fn sheet(ui: &mut Ui, name: PanelName, world: &World<'_>) {
     for line in sheets::lines(name) {
         ui.add(Label::new(*line).wrap());
     }
-    let keys: Vec<_> = bindings(world.settings.layout.keys)
+    let keys: Vec<_> = bindings(world.settings.window.keys)
         .into_iter()
         .filter(|binding| sheets::groups(name).contains(&binding.group))
         .collect();

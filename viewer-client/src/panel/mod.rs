@@ -40,10 +40,10 @@ use egui::{
 pub use copied::text as text_of;
 pub use notice::NOTICE_TIME;
 
-use crate::command::{
-    Command, DeskCommand, LayoutCommand, Move, PanelName, Source, Switch, WindowSide,
-};
-use crate::settings::{Layout as Settled, WIDTHS};
+use crate::command::{Command, DesktopCommand, LayoutCommand};
+use crate::settings::Layout as Settled;
+use crate::value::WIDTHS;
+use crate::value::{Move, PanelName, Source, Switch, WindowSide};
 use crate::world::World;
 
 /// A part of the window.
@@ -199,7 +199,7 @@ impl Sides {
             None if self.names[other as usize].is_empty() => 0.0,
             None => Settled::STRIP,
         };
-        (self.room - taken).min(f32::from(*WIDTHS.end()))
+        (self.room - taken).min(f32::from(WIDTHS.high))
     }
 }
 
@@ -320,7 +320,7 @@ fn edge(
     let Some(pull) = pull.filter(|pull| pull.side == side) else { return };
     let layout = &world.settings.layout;
     if let Some(by) = response.total_drag_delta() {
-        let least = f32::from(*WIDTHS.start());
+        let least = f32::from(WIDTHS.low);
         let now = (pull.from + outwards * by.x).max(least).min(sides.most(side, layout)).round();
         if now != pull.now {
             ui.data_mut(|data| data.insert_temp(pulled(), Pull { now, ..pull }));
@@ -339,7 +339,7 @@ fn edge(
 fn keep_widths(sides: &Sides, layout: &Settled, commands: &mut Vec<Command>) {
     for side in WindowSide::ALL {
         let Some(width) = sides.widths[side as usize] else { continue };
-        let points = (width.round() as u16).clamp(*WIDTHS.start(), *WIDTHS.end());
+        let points = (width.round() as u16).clamp(WIDTHS.low, WIDTHS.high);
         if points != layout.width(side) {
             commands.push(Command::Layout(LayoutCommand::Width(side, points)));
         }
@@ -454,6 +454,6 @@ fn copy_by_key(ui: &Ui, response: &Response, name: PanelName, commands: &mut Vec
     let selects = ctx.plugin::<LabelSelectionState>().lock().has_selection();
     if !selects && !ctx.egui_wants_keyboard_input() {
         ui.input_mut(|input| input.events.retain(|event| !is_copy(event)));
-        commands.push(Command::Desk(DeskCommand::Copy(Source::Panel(name))));
+        commands.push(Command::Desktop(DesktopCommand::Copy(Source::Panel(name))));
     }
 }

@@ -1,7 +1,7 @@
 //! What each section is for, for those who ask.
 
-use crate::command::PanelName;
 use crate::keys::Group;
+use crate::value::PanelName;
 
 /// What there is to know of a section.
 pub(super) fn lines(name: PanelName) -> &'static [&'static str] {

@@ -7,10 +7,11 @@ use egui::{Align, Label, Layout, RichText, Sense, Ui};
 
 use super::Panel;
 use super::widgets::dot;
-use crate::command::{Command, DeskCommand, LayoutCommand, Source, Switch};
-use crate::format;
-use crate::status::{LinkState, SILENCE, Status};
-use crate::theme;
+use crate::command::{Command, DesktopCommand, SessionCommand, WindowCommand};
+use crate::source::status::{LinkState, SILENCE, Status};
+use crate::value::format;
+use crate::value::theme;
+use crate::value::{Source, Switch};
 use crate::world::World;
 
 /// The state of the connection in one line.
@@ -29,7 +30,7 @@ impl Panel for StatusBar {
                 let keys =
                     ui.button("F1  Keys").on_hover_text("Every key and mouse button (F1, ?)");
                 if keys.clicked() {
-                    commands.push(Command::Layout(LayoutCommand::Help(Switch::Toggle)));
+                    commands.push(Command::Window(WindowCommand::Help(Switch::Toggle)));
                 }
                 // What was true when the daemon spoke last.
                 ui.add_enabled_ui(answers, |ui| figures(ui, world));
@@ -37,7 +38,7 @@ impl Panel for StatusBar {
         });
         bar.response.interact(Sense::click()).context_menu(|ui| {
             if ui.button("Copy as text").clicked() {
-                commands.push(Command::Desk(DeskCommand::Copy(Source::Status)));
+                commands.push(Command::Desktop(DesktopCommand::Copy(Source::Status)));
                 ui.close();
             }
         });
@@ -81,7 +82,7 @@ fn connection(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
             let text = format!("Disconnected: {reason}; retrying in {seconds:.0} s");
             ui.add(Label::new(text).selectable(false).truncate());
             if ui.small_button("Now").on_hover_text("Connect now (R)").clicked() {
-                commands.push(Command::Reconnect);
+                commands.push(Command::Session(SessionCommand::Reconnect));
             }
         }
     }

@@ -2,7 +2,8 @@
 
 use common::Filter;
 
-use crate::command::{FilterCommand, MOST_KEPT, MOST_SELECTORS, Sphere};
+use crate::command::{FilterCommand, MOST_KEPT};
+use crate::value::{MOST_SELECTORS, Sphere};
 
 /// Which paths are shown.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -79,10 +80,10 @@ impl FilterSettings {
                 self.chosen = None;
             }
             FilterCommand::Keep(name) => self.keep(name),
-            FilterCommand::Use(name, switch) => {
+            FilterCommand::Use(switch, name) => {
                 self.named(name).into_iter().for_each(|kept| switch.apply(&mut kept.on));
             }
-            FilterCommand::Reverse(name, switch) => {
+            FilterCommand::Reverse(switch, name) => {
                 self.named(name).into_iter().for_each(|kept| switch.apply(&mut kept.inverted));
             }
             FilterCommand::Load(name) => {

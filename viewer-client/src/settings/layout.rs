@@ -33,7 +33,7 @@ const VIEW_SHARE: f32 = 0.4;
 
 impl Default for Layout {
     fn default() -> Self {
-        let left = PanelName::ALL.iter().copied().filter(|name| name.is_usually_left());
+        let left = PanelName::ALL.into_iter().filter(|name| name.is_usually_left());
         Self {
             order: PanelName::ALL.to_vec(),
             left: left.collect(),
@@ -66,7 +66,7 @@ impl Layout {
     #[must_use]
     pub fn completed(mut self) -> Self {
         let missing: Vec<PanelName> =
-            PanelName::ALL.iter().copied().filter(|name| !self.order.contains(name)).collect();
+            PanelName::ALL.into_iter().filter(|name| !self.order.contains(name)).collect();
         let is_left = |name: &PanelName| name.is_usually_left();
         self.left.extend(missing.iter().copied().filter(is_left));
         self.order.extend(missing);

@@ -2,17 +2,19 @@
 
 mod filter;
 mod layout;
+pub mod region;
+pub mod tree;
 
 pub use filter::{FilterSettings, KeptFilter};
 pub use layout::Layout;
 
 use glam::{Vec3, Vec4};
 
-use crate::camera::Bounds;
-use crate::command::{
-    CloudSettings, Command, ImageCommand, ImageSettings, SceneSettings, WindowSettings,
-};
-use crate::value::{Exposure, Layer, Shading};
+pub use crate::command::{CloudSettings, ImageSettings, SceneSettings, WindowSettings};
+
+use crate::command::{Command, ImageCommand, Setting};
+
+use crate::value::{Bounds, Exposure, Layer, Settable, Shading, Theme};
 
 /// Every choice.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -54,8 +56,33 @@ impl Settings {
     /// The commands that lead from the defaults to these settings, but for the filter and the
     /// arrangement of the panels.
     pub fn commands(&self) -> Vec<Command> {
-        let Self { cloud, scene, image, window, filter: _, layout: _ } = self;
+        let Self { cloud, scene, image, window, .. } = self;
         [cloud.commands(), scene.commands(), image.commands(), window.commands()].concat()
+    }
+}
+
+/// The settings of one table.
+pub trait Group: Sized {
+    /// Those among all of them.
+    fn of(settings: &Settings) -> &Self;
+}
+
+macro_rules! groups {
+    ($($field:ident: $group:ident),+) => {$(
+        impl Group for $group {
+            fn of(settings: &Settings) -> &Self {
+                &settings.$field
+            }
+        }
+    )+};
+}
+
+groups!(cloud: CloudSettings, scene: SceneSettings, image: ImageSettings, window: WindowSettings);
+
+impl<G: Group, T: Settable> Setting<G, T> {
+    /// What it is set to.
+    pub fn value(&self, settings: &Settings) -> T {
+        (self.get)(G::of(settings)).clone()
     }
 }
 
@@ -70,6 +97,13 @@ impl SceneSettings {
         let Some(normal) = self.clip.normal().map(Vec3::from) else { return Vec4::W };
         let place = bounds.min.lerp(bounds.max, self.cut);
         normal.extend(-normal.dot(place))
+    }
+}
+
+impl WindowSettings {
+    /// True for light on dark.
+    pub fn is_dark(&self) -> bool {
+        self.theme == Theme::Dark
     }
 }
 

@@ -18,19 +18,34 @@ pub trait Choice:
         words.join(" ").trim_end_matches('.').to_owned()
     }
 
+    /// What panels call it: its message, or else its word with a capital.
+    fn label(self) -> String {
+        if let Some(label) = self.get_message() {
+            return label.to_owned();
+        }
+        let word = self.to_string();
+        let mut letters = word.chars();
+        letters
+            .next()
+            .map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    }
+
     /// The choice behind this one, round and round.
     #[must_use]
     fn next(self) -> Self {
         let all = Self::VARIANTS;
         let next = all.iter().position(|choice| *choice == self).map_or(0, |i| i + 1);
-        all.get(next).or(all.first()).copied().unwrap_or(self)
+        all.get(next).or_else(|| all.first()).copied().unwrap_or(self)
     }
 }
 
 /// Makes an enum a [`Choice`]: its words are the names of its variants in lower case, and what is
 /// documented of a variant is what users read when they point at it.
 macro_rules! choices {
-    ($(#[$meta:meta])* pub enum $name:ident { $($variants:tt)+ }) => {
+    (
+        $(#[$meta:meta])*
+        pub enum $name:ident { $($(#[$variant_meta:meta])* $variant:ident,)+ }
+    ) => {
         $(#[$meta])*
         #[derive(
             Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize,
@@ -38,11 +53,12 @@ macro_rules! choices {
         )]
         #[serde(rename_all = "kebab-case")]
         #[strum(serialize_all = "kebab-case")]
-        pub enum $name { $($variants)+ }
+        pub enum $name { $($(#[$variant_meta])* $variant,)+ }
 
         impl $name {
             /// All of them.
-            pub const ALL: &'static [Self] = <Self as strum::VariantArray>::VARIANTS;
+            pub const ALL: [Self; <Self as strum::VariantArray>::VARIANTS.len()] =
+                [$(Self::$variant),+];
         }
 
         impl $crate::value::Choice for $name {}

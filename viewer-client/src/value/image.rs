@@ -1,7 +1,7 @@
 //! How the picture is shown.
 
-use super::choice::choices;
 use super::Settable;
+use super::choice::choices;
 
 choices! {
     /// What the image panel shows.
@@ -17,6 +17,7 @@ choices! {
         /// Where the image is still wrong: the relative squared error against the reference.
         Error,
         /// FLIP: how different a person sees image and reference who flips between them.
+        #[strum(message = "FLIP")]
         Flip,
         /// Mean acceptance probability of proposals made from paths to here.
         Acceptance,
@@ -27,6 +28,7 @@ choices! {
         /// Relative standard error of the light here, from how chains differ.
         Spread,
         /// R-hat: whether chains agree how much light comes here.
+        #[strum(message = "R-hat")]
         Disagreement,
     }
 }
@@ -52,14 +54,19 @@ choices! {
     pub enum Channel {
         /// All of the light.
         #[default]
+        #[strum(message = "RGB")]
         Rgb,
         /// Red alone, as grey.
+        #[strum(message = "R")]
         Red,
         /// Green alone, as grey.
+        #[strum(message = "G")]
         Green,
         /// Blue alone, as grey.
+        #[strum(message = "B")]
         Blue,
         /// Luminance, as grey.
+        #[strum(message = "Y")]
         Luminance,
     }
 }
@@ -70,10 +77,12 @@ choices! {
     pub enum ToneCurve {
         /// As screens expect light.
         #[default]
+        #[strum(message = "sRGB")]
         Srgb,
         /// A power of the light.
         Gamma,
         /// Luminance as a colour, over four decades.
+        #[strum(message = "False colour")]
         False,
     }
 }

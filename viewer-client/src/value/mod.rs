@@ -1,34 +1,42 @@
-//! Values that commands carry and settings hold: numbers within ranges, switches, choices, places.
+//! The ground: values that know nothing else of the viewer.
 //!
-//! Each has one text form, which it reads and writes; nothing here knows what the values are for.
+//! Most are what commands carry and settings hold: numbers within ranges, switches, choices, places.
+//! Each of these has one text form, which it reads and writes.
 
+mod bounds;
 mod camera;
 mod choice;
 mod cloud;
 mod filter;
+pub mod format;
+pub mod history;
 mod image;
 mod number;
+mod panel;
 mod path;
+pub mod rates;
 mod scene;
 mod steer;
 mod switch;
 mod text;
+pub mod theme;
+pub mod trends;
 mod window;
 mod words;
 
+pub use bounds::Bounds;
 pub use camera::{Side, Viewpoint};
 pub use choice::Choice;
 pub use cloud::{Blend, ColorMode, ColorScale, Marks};
 pub use filter::{MOST_SELECTORS, Sphere, kind_name};
 pub use image::{Channel, Exposure, Layer, ToneCurve};
 pub use number::{Axes, Number, Range, axes, range};
+pub use panel::PanelName;
 pub use path::{Pointer, ShownPath, VertexStep};
 pub use scene::{ClipSide, Handles, Light, Lighting, Shading};
 pub use switch::Switch;
 pub use text::{Line, name};
-pub use window::{
-    KeyPreset, MousePreset, Move, PanelName, Source, Theme, ThemeChange, WIDTHS, WindowSide,
-};
+pub use window::{KeyPreset, MousePreset, Move, Source, Theme, ThemeChange, WIDTHS, WindowSide};
 pub use words::{CommandError, Words};
 
 use std::fmt::Debug;
@@ -108,7 +116,7 @@ impl Settable for Option<f32> {
         *self = Some(to);
     }
 
-    fn as_change(&self) -> Option<f32> {
+    fn as_change(&self) -> Self {
         *self
     }
 }

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use super::{CommandError, Shape, Value, Words};
 
 /// The values that a number may have, and how a slider shows them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Range<T> {
     /// The smallest.
     pub low: T,
@@ -84,7 +84,24 @@ macro_rules! numbers {
                 round(value) as $type
             }
         }
+    )+};
+}
 
+numbers!(f32: |x| x, u8: f64::round, u16: f64::round, u32: f64::round, u64: f64::round);
+numbers!(i16: f64::round, i32: f64::round);
+
+impl Number for f64 {
+    fn to_f64(self) -> f64 {
+        self
+    }
+
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+}
+
+macro_rules! values {
+    ($($type:ty),+) => {$(
         impl Value for $type {
             type Limits = Range<$type>;
 
@@ -118,8 +135,7 @@ macro_rules! numbers {
     )+};
 }
 
-numbers!(f32: |x| x, f64: |x| x, u8: f64::round, u16: f64::round, u32: f64::round);
-numbers!(u64: f64::round, i16: f64::round, i32: f64::round);
+values!(f32, f64, u8, u16, u32, u64, i16, i32);
 
 /// Numbers that belong together, such as the coordinates of a point.
 #[derive(Clone, Copy, Debug)]

@@ -69,8 +69,7 @@ impl Value for SkipTo {
             return Ok(Self::Acceptance);
         }
         let strategy = strategy(word).map(Self::Strategy);
-        strategy
-            .ok_or_else(|| CommandError::no_choice(word, "accepted, the number of a strategy"))
+        strategy.ok_or_else(|| CommandError::no_choice(word, "accepted, the number of a strategy"))
     }
 
     fn text(&self) -> String {

@@ -1,32 +1,7 @@
 //! What the window holds, and whose keys and mouse it follows.
 
 use super::choice::choices;
-use super::{Choice, CommandError, Range, Settable, Value, Words, range};
-
-choices! {
-    /// A section at the sides of the window, from the left of the window to the right.
-    #[derive(PartialOrd, Ord)]
-    pub enum PanelName {
-        /// How paths are drawn.
-        Cloud,
-        /// Which paths are shown.
-        Filter,
-        /// How the scene is drawn.
-        Scene,
-        /// The progressive image.
-        Image,
-        /// The selected path.
-        Path,
-        /// The chain that the user steps.
-        Explorer,
-        /// The file of paths that is played.
-        Playback,
-        /// Counts and rates.
-        Statistics,
-        /// Whether the chains can be believed.
-        Diagnostics,
-    }
-}
+use super::{CommandError, PanelName, Range, Settable, Value, Words, range};
 
 choices! {
     /// A side of the window.
@@ -85,7 +60,7 @@ impl Value for Move {
     }
 
     fn examples((): &()) -> Vec<Self> {
-        let before = PanelName::ALL.iter().map(|name| Self::Before(*name));
+        let before = PanelName::ALL.map(Self::Before);
         PLACES.into_iter().map(|(_, place)| place).chain(before).collect()
     }
 }
@@ -136,9 +111,11 @@ choices! {
     #[derive(Default)]
     pub enum KeyPreset {
         /// Those of today's programs.
+        #[strum(message = "Today's keys")]
         #[default]
         Today,
         /// Those of the Lvis of 2014.
+        #[strum(message = "Keys of 2014")]
         Classic,
     }
 }
@@ -194,7 +171,7 @@ impl Value for Source {
     }
 
     fn examples((): &()) -> Vec<Self> {
-        let panels = PanelName::ALL.iter().map(|name| Self::Panel(*name));
+        let panels = PanelName::ALL.map(Self::Panel);
         [Self::Status, Self::Settings].into_iter().chain(panels).collect()
     }
 }

@@ -31,16 +31,14 @@ pub enum CommandError {
         found: String,
     },
     /// A number that makes no sense there.
-    #[error("{parameter} must lie between {low} and {high}, and {found} does not")]
+    #[error("{parameter} must lie between {limits}, and {found} does not")]
     OutOfRange {
         /// The parameter.
         parameter: String,
         /// What was given.
         found: String,
-        /// The smallest value.
-        low: String,
-        /// The largest.
-        high: String,
+        /// The limits.
+        limits: String,
     },
     /// A word that is none of the choices.
     #[error("`{found}` is none of: {choices}")]
@@ -89,7 +87,7 @@ impl<'a> Words<'a> {
     }
 
     /// The next word.
-    pub fn next(&mut self) -> Option<&'a str> {
+    pub fn word(&mut self) -> Option<&'a str> {
         let word = self.peek()?;
         self.rest = self.rest.strip_prefix(word).unwrap_or_default().trim_start();
         Some(word)
@@ -98,7 +96,7 @@ impl<'a> Words<'a> {
     /// Reads these words if they are the next ones.
     pub fn skip(&mut self, words: &str) -> bool {
         let mut after = self.clone();
-        let found = words.split(' ').all(|word| after.next() == Some(word));
+        let found = words.split(' ').all(|word| after.word() == Some(word));
         if found {
             *self = after;
         }
@@ -107,7 +105,7 @@ impl<'a> Words<'a> {
 
     /// The next word, which stands for the parameter `name`.
     pub(super) fn parameter(&mut self, name: &str) -> Result<&'a str, CommandError> {
-        self.next().ok_or_else(|| CommandError::MissingParameter(name.to_uppercase()))
+        self.word().ok_or_else(|| CommandError::MissingParameter(name.to_uppercase()))
     }
 
     /// A number within `range`; NaN and infinities are none.
@@ -125,8 +123,8 @@ impl<'a> Words<'a> {
         if range.contains(value) {
             return Ok(value);
         }
-        let (low, high) = (range.low.to_string(), range.high.to_string());
-        Err(CommandError::OutOfRange { parameter, found: word.to_owned(), low, high })
+        let limits = format!("{} and {}", range.low, range.high);
+        Err(CommandError::OutOfRange { parameter, found: word.to_owned(), limits })
     }
 
     /// One of a closed set of words.
@@ -146,7 +144,7 @@ impl<'a> Words<'a> {
 
     /// Nothing may follow.
     pub fn end(mut self) -> Result<(), CommandError> {
-        match self.next() {
+        match self.word() {
             Some(word) => Err(CommandError::TooMuch(word.to_owned())),
             None => Ok(()),
         }

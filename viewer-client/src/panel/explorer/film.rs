@@ -5,11 +5,11 @@ use egui::{
     WidgetInfo, pos2, vec2,
 };
 
-use crate::command::Layer;
-use crate::format;
 use crate::imaging::{self, Sources};
 use crate::settings::ImageSettings;
-use crate::theme;
+use crate::value::Layer;
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// Widest that it gets, in points.

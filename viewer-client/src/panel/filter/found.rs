@@ -6,12 +6,13 @@ use common::{
 };
 use egui::{FontFamily, Label, RichText, Ui};
 
-use crate::command::{Command, FilterCommand, Switch};
-use crate::format;
+use crate::command::{Command, FilterCommand};
 use crate::panel::widgets::row;
 use crate::settings::FilterSettings;
-use crate::theme;
-use crate::tree::{self, Source};
+use crate::settings::tree::{self, Source};
+use crate::value::Switch;
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// How much larger than needed a region becomes that is widened for a path.
@@ -179,7 +180,7 @@ fn remedies(settings: &FilterSettings, failed: &Shortfall) -> Vec<Remedy> {
         }
         Some(Source::Kept(number)) => {
             let Some(kept) = settings.kept.get(number) else { return Vec::new() };
-            let off = FilterCommand::Use(kept.name.clone(), Switch::Off);
+            let off = FilterCommand::Use(Switch::Off, kept.name.clone());
             vec![(format!("Switch off {}", kept.name), "A kept filter asks for this", off)]
         }
         None => Vec::new(),

@@ -10,8 +10,10 @@ use egui::{Button, DragValue, Label, RichText, Ui};
 
 use super::widgets::{dot, toggle};
 use super::{Panel, builder};
-use crate::command::{Command, FilterCommand, kind_name};
-use crate::theme;
+use crate::command::{Command, FilterCommand};
+use crate::keys;
+use crate::value::kind_name;
+use crate::value::theme;
 use crate::world::World;
 
 pub(super) use text::vocabulary;
@@ -114,7 +116,7 @@ fn selectors(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterComma
     let settings = &world.settings.filter;
     if settings.selectors.is_empty() {
         let [start, end, any, all] =
-            world.settings.layout.keys.selectors().map(|(key, _)| key.name());
+            keys::selectors(world.settings.window.keys).map(|(key, _)| key.name());
         let text = format!(
             "Point at a surface and press {start} for a sphere in which paths start, {end} for one \
              in which they end, {any} for any and {all} for all through which they pass.",

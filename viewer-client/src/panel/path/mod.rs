@@ -15,11 +15,12 @@ use self::file::UNKNOWN;
 use self::vertices::Described;
 use super::Panel;
 use super::widgets::{dot, empty_state, row};
-use crate::command::{Command, PathCommand, VertexStep};
-use crate::dump::Outcome;
-use crate::format;
-use crate::selection::Detail;
-use crate::theme;
+use crate::command::{Command, PathCommand};
+use crate::source::dump::Outcome;
+use crate::source::selection::Detail;
+use crate::value::VertexStep;
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// A daemon that has not answered for so long does not know the question.

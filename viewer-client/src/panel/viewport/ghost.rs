@@ -11,8 +11,8 @@ use super::highlight::arrow_head;
 use super::overlay::{MARGIN, veil};
 use super::project::Projector;
 use crate::panel::hover;
-use crate::steering::Moment;
-use crate::theme;
+use crate::source::steering::Moment;
+use crate::value::theme;
 use crate::world::World;
 
 /// Widths in points.
@@ -39,7 +39,7 @@ pub(super) fn paint(painter: &Painter, projector: &Projector, rect: Rect, world:
         fan(&pen, world, moment);
     }
     step(&pen, moment);
-    key(painter, rect, moment, world.settings.layout.dark);
+    key(painter, rect, moment, world.settings.window.is_dark());
 }
 
 /// All proposals of the fan that `moment` belongs to, fainter the less likely they are; those that

@@ -7,9 +7,9 @@ use glam::Vec3;
 
 use super::project::Projector;
 use super::{ghost, highlight, light, others, pointed, selectors};
-use crate::format;
-use crate::status::LinkState;
-use crate::theme;
+use crate::source::status::LinkState;
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// Distance of texts from the edge in points.
@@ -22,7 +22,7 @@ pub(super) const AXES: f32 = MARGIN + 26.0 + DISC + 8.0;
 /// Writes over the view.
 pub(super) fn paint(ui: &Ui, projector: &Projector, rect: Rect, world: &World<'_>) {
     let painter = ui.painter().with_clip_rect(rect);
-    let ink = if world.settings.layout.dark {
+    let ink = if world.settings.window.is_dark() {
         Color32::from_rgb(214, 219, 227)
     } else {
         Color32::from_rgb(40, 44, 50)

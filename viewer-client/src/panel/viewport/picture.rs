@@ -5,10 +5,10 @@ use glam::{UVec4, Vec3, Vec4};
 use shaders::{FrameUniforms, PALETTE_SIZE, RAMP_SIZE};
 
 use crate::camera::NEAR;
-use crate::command::{Blend, ColorMode, ColorScale, Light, Lighting, Marks, Shading};
-use crate::gpu::{Crossing, PageRange, Picture};
+use crate::draw::gpu::{Crossing, PageRange, Picture};
 use crate::settings::SceneSettings;
-use crate::theme;
+use crate::value::theme;
+use crate::value::{Blend, ColorMode, ColorScale, Light, Lighting, Marks, Shading};
 use crate::world::World;
 
 /// Opacity of surfaces seen from behind when backs are cut away.
@@ -29,7 +29,7 @@ pub(super) fn of(world: &World<'_>, size: [u32; 2], pixels_per_point: f32) -> Pi
     let [width, height] = size.map(|side| side as f32);
     let lens = world.camera.lens(width / height);
     let cloud = &world.settings.cloud;
-    let dark = world.settings.layout.dark;
+    let dark = world.settings.window.is_dark();
     let (darkest, brightest) = world.store.tone().range();
     let inner_dots =
         if cloud.marks == Marks::Lines { cloud.dots } else { cloud.dots.max(LONE_DOT) };
@@ -81,7 +81,7 @@ fn line(world: &World<'_>, pixels_per_point: f32) -> Vec4 {
     let cloud = &world.settings.cloud;
     // Seen from the pinhole itself, the last edges are points on the screen and hide nothing.
     let at_lens = if world.camera.is_through() { 1.0 } else { AT_LENS };
-    let strength = if world.settings.layout.dark { 1.0 } else { ON_LIGHT_GROUND };
+    let strength = if world.settings.window.is_dark() { 1.0 } else { ON_LIGHT_GROUND };
     let opacity = (strength * cloud.opacity).min(1.0);
     Vec4::new(cloud.width * pixels_per_point, opacity, cloud.hidden, at_lens)
 }

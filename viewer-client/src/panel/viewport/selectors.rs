@@ -5,9 +5,11 @@ use glam::{DVec3, Vec3};
 
 use super::handles::{Ball, Hold, REACH};
 use super::project::Projector;
-use crate::command::{Command, FilterCommand, Sphere, kind_name};
-use crate::pick;
-use crate::theme;
+use crate::command::{Command, FilterCommand};
+use crate::draw::pick;
+use crate::keys;
+use crate::value::theme;
+use crate::value::{Sphere, kind_name};
 use crate::world::World;
 
 /// A new sphere's radius in radii of the scene.
@@ -24,7 +26,7 @@ pub(super) fn interact(
 ) -> bool {
     let mut push = |command| commands.push(Command::Filter(command));
     if let Some(place) = response.hover_pos() {
-        let keys = world.settings.layout.keys.selectors();
+        let keys = keys::selectors(world.settings.window.keys);
         let pressed = keys.into_iter().find(|(key, _)| ui.input(|input| input.key_pressed(*key)));
         if let Some((_, kind)) = pressed {
             let ball = under_cursor(projector, place, world);
