@@ -41,7 +41,7 @@ impl Crate {
             let module = module_of(src, file);
             for (path, _) in references(file) {
                 let path: Vec<String> = path.split("::").map(str::to_owned).collect();
-                let Some(path) = read.from_root(&module, path) else { continue };
+                let Some(path) = read.absolute(&module, &path) else { continue };
                 if let Some(name) = path.last() {
                     read.handed_on.insert((module.clone(), name.clone()), path.clone());
                 }
@@ -58,12 +58,12 @@ impl Crate {
     }
 
     /// The path from the crate's root; `None` for other crates and for plain names.
-    fn from_root(&self, module: &Module, path: Vec<String>) -> Option<Vec<String>> {
+    fn absolute(&self, module: &Module, path: &[String]) -> Option<Vec<String>> {
         if path[0] == "crate" {
             return Some(path[1..].to_vec());
         }
         let child = [module.as_slice(), &path[..1]].concat();
-        self.modules.contains(&child).then(|| [module.as_slice(), &path].concat())
+        self.modules.contains(&child).then(|| [module.as_slice(), path].concat())
     }
 
     /// The module that what a path names is written in.

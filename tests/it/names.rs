@@ -1,6 +1,7 @@
-//! The paths that a file of Rust names, read as tokens, so that grouped imports, paths in the middle
-//! of an expression and paths inside macros count, while comments, strings and `#[cfg(test)]` items
-//! do not.
+//! The paths that a file of Rust names.
+//!
+//! Files are read as tokens, so that grouped imports, paths in the middle of an expression and paths
+//! inside macros count, while comments, strings and `#[cfg(test)]` items do not.
 
 use std::str::FromStr as _;
 
