@@ -89,10 +89,12 @@ impl Crate {
 
     /// The circles among modules with the same parent, below `room`.
     fn circles(&self, room: &[String]) -> Vec<String> {
-        let parents: BTreeSet<&[String]> =
-            self.modules.iter().filter_map(|m| m.split_last()).map(|(_, parent)| parent).collect();
+        let ancestors = |module: &Module| -> Vec<Module> {
+            (0..module.len()).map(|n| module[..n].to_vec()).collect()
+        };
+        let parents: BTreeSet<Module> = self.modules.iter().flat_map(ancestors).collect();
         let parents = parents.into_iter().filter(|parent| parent.starts_with(room));
-        parents.flat_map(|parent| self.circles_among(parent)).collect()
+        parents.flat_map(|parent| self.circles_among(&parent)).collect()
     }
 
     fn circles_among(&self, parent: &[String]) -> Vec<String> {
