@@ -128,10 +128,13 @@ impl eframe::App for Window {
             ui.ctx().request_repaint();
         }
         self.viewer.ui(ui);
-        if let Some(keeper) = &mut self.keeper
-            && let Some(wait) = keeper.note(self.viewer.preferences(), Instant::now())
-        {
-            ui.ctx().request_repaint_after(wait);
+        if let Some(keeper) = &mut self.keeper {
+            if let Some(wait) = keeper.note(self.viewer.preferences(), Instant::now()) {
+                ui.ctx().request_repaint_after(wait);
+            }
+            if let Some(problem) = keeper.problem() {
+                self.viewer.complain(problem);
+            }
         }
         if self.viewer.is_closing() {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);

@@ -31,7 +31,7 @@ table! {
         /// Removes a selector.
         Delete "filter delete" (number: u32 [NUMBER]);
         /// Removes every selector.
-        DeleteAll "filter bare";
+        DeleteAll "filter delete-all" | "filter bare";
         /// Keeps text and selectors under a name.
         Keep "filter keep" (name: String [Line::Name]);
         /// Whether a kept filter holds, beside the others.

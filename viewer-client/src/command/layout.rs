@@ -1,4 +1,4 @@
-//! `panel`, `fold`, `arrange`, `width`, `usual`: where panels are.
+//! `panel`, `fold`, `arrange`, `width`, `reset-panels`: where panels are.
 
 use super::table::table;
 use crate::value::{Move, PanelName, Switch, WIDTHS, WindowSide};
@@ -17,7 +17,7 @@ table! {
         Arrange "arrange" (name: PanelName, place: Move);
         /// Sets the width of a side of the window.
         Width "width" (side: WindowSide, points: u16 [WIDTHS]);
-        /// Puts all panels where they usually are.
-        Usual "usual";
+        /// Puts all panels back where they usually are.
+        Usual "reset-panels" | "usual";
     }
 }

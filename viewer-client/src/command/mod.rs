@@ -7,6 +7,7 @@ mod camera;
 mod cloud;
 mod desktop;
 mod filter;
+mod form;
 mod image;
 mod layout;
 mod path;
@@ -21,13 +22,14 @@ pub use camera::CameraCommand;
 pub use cloud::{CloudCommand, CloudSettings};
 pub use desktop::{DesktopCommand, HOME};
 pub use filter::{FilterCommand, MOST_KEPT};
+pub use form::{Form, Setting, Trait};
 pub use image::{ImageCommand, ImageSettings};
 pub use layout::LayoutCommand;
 pub use path::PathCommand;
 pub use play::PlayCommand;
 pub use scene::{SceneCommand, SceneSettings};
 pub use session::SessionCommand;
-pub use table::{Form, Setting, Trait};
+
 pub use window::{WindowCommand, WindowSettings};
 
 use std::fmt;

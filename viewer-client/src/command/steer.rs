@@ -44,11 +44,13 @@ forms! {
     "chains precision" (error: f64 [range(LEAST_PRECISION, MOST_PRECISION)])
         => { Command::Order(Order::Chains(Chains::SetPrecision(error))) } "";
     /// Starts the chains anew with this number of the run.
-    "chains restart" (seed: u64 [ANY]) => { Command::Order(Order::Chains(Chains::Restart { seed })) } "";
+    "chains restart" (seed: u64 [ANY])
+        => { Command::Order(Order::Chains(Chains::Restart { seed })) } "";
     /// Asks to be the driver.
     "lease ask" () => { Command::Order(Order::Lease(LeaseRequest::Ask)) } "";
     /// Gives up the controls, so that you are no longer the driver.
     "lease release" () => { Command::Order(Order::Lease(LeaseRequest::Release)) } "";
     /// Makes another viewer the driver.
-    "lease give" (session: u64 [ANY]) => { Command::Order(Order::Lease(LeaseRequest::HandOver(session))) } "";
+    "lease give" (session: u64 [ANY])
+        => { Command::Order(Order::Lease(LeaseRequest::HandOver(session))) } "";
 }

@@ -1,4 +1,4 @@
-//! What a row of a table of commands yields, and the two macros that make tables.
+//! The macros that make tables of commands.
 //!
 //! A row is written once and is variant, parser, printer, help, entry of the palette and copied text;
 //! a row that sets something is field, default, range and slider, too:
@@ -7,120 +7,6 @@
 //! /// How far apart the lines of the grid are.
 //! Spacing "scene spacing" (units: f32 [range(0.1, 10.0).log()]) sets spacing = 1.0, "Spacing";
 //! ```
-
-use std::fmt;
-
-use super::Command;
-use crate::value::{CommandError, Range, Settable, Shape, Words};
-
-/// A command in general: how it is written, and what it does.
-pub struct Form {
-    /// What it begins with, such as `cloud width`.
-    pub words: &'static str,
-    /// What scripts and links may begin with instead: what it was called in the past.
-    pub(super) aliases: &'static [&'static str],
-    /// What it does, as its documentation says.
-    pub(super) documentation: &'static str,
-    pub(super) parameters: &'static [Parameter],
-    /// What panels call it; blank where it sets nothing.
-    pub label: &'static str,
-    pub(super) traits: &'static [Trait],
-    pub(super) read: fn(&mut Words<'_>) -> Result<Command, CommandError>,
-    /// The texts of its parameters, if the command is of this form.
-    pub(super) write: fn(&Command) -> Option<Vec<String>>,
-    /// Some commands of this form, with the extreme values among them.
-    pub examples: fn() -> Vec<Command>,
-}
-
-/// A parameter of a form.
-pub(super) struct Parameter {
-    pub(super) name: &'static str,
-    pub(super) form: fn(&str) -> String,
-    pub(super) shape: fn() -> Shape,
-}
-
-/// Something that is special about a command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Trait {
-    /// A link to a view may hold it: it looks, and does nothing else.
-    Linked,
-    /// It opens or closes what is before the eyes for a moment, so that there is nothing to undo.
-    Passing,
-    /// It sets something that is remembered from one day to the next.
-    Kept,
-}
-
-impl Form {
-    /// How it is written, with its parameters in capitals: `cloud width PIXELS`.
-    pub fn text(&self) -> String {
-        let parameters = self.parameters.iter().map(|p| (p.form)(p.name));
-        std::iter::once(self.words.to_owned()).chain(parameters).collect::<Vec<_>>().join(" ")
-    }
-
-    /// What it does, in one line, with its range.
-    pub fn help(&self) -> String {
-        let words: Vec<&str> = self.documentation.split_whitespace().collect();
-        let mut text = words.join(" ").trim_end_matches('.').to_owned();
-        for parameter in self.parameters {
-            let form = (parameter.form)(parameter.name);
-            match (parameter.shape)() {
-                Shape::Number(range) if self.is_setting() => {
-                    text = format!("{text} ({range})");
-                }
-                Shape::Choice(words) if form == parameter.name.to_uppercase() => {
-                    text = format!("{text}; {form} is one of {}", words.join(", "));
-                }
-                Shape::Number(_) | Shape::Choice(_) | Shape::Other => {}
-            }
-        }
-        text
-    }
-
-    /// The range of its number, if it has one.
-    pub fn range(&self) -> Option<Range<f64>> {
-        self.parameters.iter().find_map(|parameter| match (parameter.shape)() {
-            Shape::Number(range) => Some(range),
-            Shape::Choice(_) | Shape::Other => None,
-        })
-    }
-
-    /// True for commands of which this is special.
-    pub fn is(&self, special: Trait) -> bool {
-        self.traits.contains(&special)
-    }
-
-    /// True for the commands that set something of the viewer.
-    pub fn is_setting(&self) -> bool {
-        !self.label.is_empty()
-    }
-
-    /// True for commands of this form.
-    pub fn is_of(&self, command: &Command) -> bool {
-        (self.write)(command).is_some()
-    }
-}
-
-impl fmt::Debug for Form {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Form").field(&self.text()).finish()
-    }
-}
-
-/// A setting of the group `G`, which holds a `T`: what a panel needs to show it.
-pub struct Setting<G, T: Settable> {
-    /// The form of the command that sets it.
-    pub form: &'static Form,
-    /// Its value.
-    pub get: fn(&G) -> &T,
-    /// The command that changes it.
-    pub set: fn(T::Change) -> Command,
-}
-
-impl<G, T: Settable> fmt::Debug for Setting<G, T> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Setting").field(&self.form).finish()
-    }
-}
 
 /// The limits of a parameter; none where none are written.
 macro_rules! limits {
@@ -146,20 +32,21 @@ macro_rules! forms {
                 words: $words,
                 aliases: &[$($alias),*],
                 documentation: concat!($($doc, "\n"),+),
-                parameters: &[$(
-                    $crate::command::table::Parameter {
-                        name: stringify!($parameter),
-                        form: |name| <$type as $crate::value::Value>::form(name, $crate::command::table::limits!($($limits)?)),
-                        shape: || <$type as $crate::value::Value>::shape($crate::command::table::limits!($($limits)?)),
-                    }
+                parameters: || vec![$(
+                    $crate::command::form::Parameter::new::<$type>(
+                        stringify!($parameter),
+                        $crate::command::table::limits!($($limits)?),
+                    )
                 ),*],
                 label: $label,
-                traits: &[$($crate::command::table::Trait::$trait),*],
+                traits: &[$($crate::command::Trait::$trait),*],
                 read: |_words| {
                     $(
-                        let name = stringify!($parameter);
-                        let $parameter =
-                            <$type as $crate::value::Value>::read(_words, name, $crate::command::table::limits!($($limits)?))?;
+                        let $parameter = <$type as $crate::value::Value>::read(
+                            _words,
+                            stringify!($parameter),
+                            $crate::command::table::limits!($($limits)?),
+                        )?;
                     )*
                     Ok($($command)+)
                 },
@@ -167,8 +54,10 @@ macro_rules! forms {
                     let $($command)+ = command else { return None };
                     Some(vec![$($crate::value::Value::text($parameter)),*])
                 },
-                examples: || $crate::command::table::forms!(@examples { $($command)+ }
-                    $($parameter : $type, $crate::command::table::limits!($($limits)?)),*),
+                examples: || $crate::command::table::forms!(
+                    @examples { $($command)+ }
+                    $($parameter : $type, $crate::command::table::limits!($($limits)?)),*
+                ),
             }
         ),+];
     };
@@ -215,13 +104,15 @@ macro_rules! table {
                 $(#[doc = $doc])+
                 $words $(| $alias)*
                 ( $parameter : <$type as $crate::value::Settable>::Change $([ $limits ])? )
-                => { $crate::command::Command::$wrap($name::$variant($parameter)) } $label $(, $trait)*;
+                => { $crate::command::Command::$wrap($name::$variant($parameter)) }
+                $label $(, $trait)*;
             )+
             $(
                 $(#[doc = $command_doc])+
                 $command_words $(| $command_alias)*
                 ( $($($operand : $operand_type $([ $operand_limits ])?),+)? )
-                => { $crate::command::Command::$wrap($name::$command $(($($operand),+))?) } "" $(, $command_trait)*;
+                => { $crate::command::Command::$wrap($name::$command $(($($operand),+))?) }
+                "" $(, $command_trait)*;
             )*
         }
 
@@ -283,7 +174,8 @@ macro_rules! table {
             $(#[doc = $doc])+
             $words $(| $alias)*
             ( $($($parameter : $type $([ $limits ])?),+)? )
-            => { $crate::command::Command::$wrap($name::$variant $(($($parameter),+))?) } "" $(, $trait)*;
+            => { $crate::command::Command::$wrap($name::$variant $(($($parameter),+))?) }
+            "" $(, $trait)*;
         )+}
     };
 }

@@ -23,7 +23,7 @@ pub(super) const BINDINGS: &[Binding] = &[
     say(plain(Key::S), Camera, "camera move 0 0 -0.02", "down"),
     find(plain(Key::Enter), Explorer, seed, "make the selected path the active path"),
     say(plain(Key::Backspace), Paths, "cloud clear", "clear all paths"),
-    say(plain(Key::Home), Paths, "filter bare", "delete all selectors"),
+    say(plain(Key::Home), Paths, "filter delete-all", "delete all selectors"),
     find(plain(Key::A), Paths, handles, "handles of selectors move, or scale"),
     find(
         plain(Key::F1),

@@ -44,10 +44,10 @@ impl Value for Viewpoint {
     fn read(words: &mut Words<'_>, _: &str, (): &()) -> Result<Self, CommandError> {
         let far = range(-1e7, 1e7);
         Ok(Self {
-            pivot: [words.number("X", &far)?, words.number("Y", &far)?, words.number("Z", &far)?],
-            distance: words.number("DISTANCE", &range(1e-4, 1e7))?,
-            yaw: words.number("YAW", &range(-360.0, 360.0))?,
-            pitch: words.number("PITCH", &range(-90.0, 90.0))?,
+            pivot: [far.read(words, "X")?, far.read(words, "Y")?, far.read(words, "Z")?],
+            distance: range(1e-4, 1e7).read(words, "DISTANCE")?,
+            yaw: range(-360.0, 360.0).read(words, "YAW")?,
+            pitch: range(-90.0, 90.0).read(words, "PITCH")?,
         })
     }
 

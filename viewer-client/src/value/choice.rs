@@ -74,11 +74,12 @@ impl<T: Choice> Value for T {
     fn form(name: &str, (): &()) -> String {
         /// More words than these are told beside the form.
         const MOST: usize = 7;
-        if T::VARIANTS.len() > MOST { name.to_uppercase() } else { words::<T>().join("|") }
+        if T::VARIANTS.len() > MOST { name.to_uppercase() } else { all_words::<T>().join("|") }
     }
 
     fn read(words: &mut Words<'_>, name: &str, (): &()) -> Result<Self, CommandError> {
-        words.choice(name)
+        let word = words.parameter(name)?;
+        word.parse().ok().ok_or_else(|| CommandError::no_choice(word, &all_words::<T>().join(", ")))
     }
 
     fn text(&self) -> String {
@@ -90,11 +91,11 @@ impl<T: Choice> Value for T {
     }
 
     fn shape((): &()) -> Shape {
-        Shape::Choice(words::<T>())
+        Shape::Choice(all_words::<T>())
     }
 }
 
 /// The words of a choice.
-pub(super) fn words<T: Choice>() -> Vec<String> {
+fn all_words<T: Choice>() -> Vec<String> {
     T::VARIANTS.iter().map(ToString::to_string).collect()
 }

@@ -51,6 +51,21 @@ impl<T: Number> Range<T> {
         self.low <= value && value <= self.high
     }
 
+    /// Reads a number within; NaN and infinities are none. `name` is for complaints.
+    pub fn read(&self, words: &mut Words<'_>, name: &str) -> Result<T, CommandError> {
+        let word = words.parameter(name)?;
+        let parameter = name.to_uppercase();
+        let is_finite = word.parse::<f64>().is_ok_and(f64::is_finite);
+        let Some(value) = word.parse().ok().filter(|_| is_finite) else {
+            return Err(CommandError::NotANumber { parameter, found: word.to_owned() });
+        };
+        if self.contains(value) {
+            return Ok(value);
+        }
+        let limits = format!("{} and {}", self.low, self.high);
+        Err(CommandError::OutOfRange { parameter, found: word.to_owned(), limits })
+    }
+
     /// The number within that is next to `value`.
     pub fn clamp(&self, value: f64) -> T {
         T::from_f64(value.clamp(self.low.to_f64(), self.high.to_f64()))
@@ -114,7 +129,7 @@ macro_rules! values {
                 name: &str,
                 limits: &Range<$type>,
             ) -> Result<Self, CommandError> {
-                words.number(name, limits)
+                limits.read(words, name)
             }
 
             fn text(&self) -> String {
@@ -164,7 +179,7 @@ impl<T: Number, const N: usize> Value for [T; N] {
     fn read(words: &mut Words<'_>, _: &str, limits: &Axes<T, N>) -> Result<Self, CommandError> {
         let mut values = limits.ranges.map(|range| range.low);
         for (i, value) in values.iter_mut().enumerate() {
-            *value = words.number(limits.names[i], &limits.ranges[i])?;
+            *value = limits.ranges[i].read(words, limits.names[i])?;
         }
         Ok(values)
     }

@@ -30,7 +30,7 @@ impl Value for VertexStep {
         } else if words.skip("previous") {
             Ok(Self::Previous)
         } else {
-            words.number("INDEX", &range(0, u8::MAX)).map(Self::To)
+            range(0, u8::MAX).read(words, "INDEX").map(Self::To)
         }
     }
 
@@ -114,7 +114,7 @@ impl Value for ShownPath {
 
     fn read(words: &mut Words<'_>, _: &str, (): &()) -> Result<Self, CommandError> {
         let id = words.parameter("ID")?.parse().map_err(|_no_id| CommandError::NoPath)?;
-        let mut number = |name| words.number(name, &ANY);
+        let mut number = |name| ANY.read(words, name);
         let header = PathHeader {
             id,
             strategy: StrategyId(number("STRATEGY")?.clamp(0.0, 255.0) as u8),
@@ -160,17 +160,17 @@ fn vertex_text(vertex: &VertexRecord) -> String {
 }
 
 fn read_vertex(words: &mut Words<'_>) -> Result<VertexRecord, CommandError> {
-    let position = [words.number("X", &ANY)?, words.number("Y", &ANY)?, words.number("Z", &ANY)?];
-    let mut normal = || words.number("NORMAL", &range(i16::MIN, i16::MAX));
+    let position = [ANY.read(words, "X")?, ANY.read(words, "Y")?, ANY.read(words, "Z")?];
+    let mut normal = || range(i16::MIN, i16::MAX).read(words, "NORMAL");
     let normal = [normal()?, normal()?];
-    let kind = VertexKind::from_code(words.number("KIND", &range(u8::MIN, u8::MAX))?);
-    let event = Event::from_code(words.number("EVENT", &range(u8::MIN, u8::MAX))?);
+    let kind = VertexKind::from_code(range(u8::MIN, u8::MAX).read(words, "KIND")?);
+    let event = Event::from_code(range(u8::MIN, u8::MAX).read(words, "EVENT")?);
     Ok(VertexRecord {
         position,
         normal,
         kind: kind.ok_or(CommandError::NoPath)?,
         event: event.ok_or(CommandError::NoPath)?,
-        material: words.number("MATERIAL", &range(u16::MIN, u16::MAX))?,
-        primitive: words.number("PRIMITIVE", &range(u32::MIN, u32::MAX))?,
+        material: range(u16::MIN, u16::MAX).read(words, "MATERIAL")?,
+        primitive: range(u32::MIN, u32::MAX).read(words, "PRIMITIVE")?,
     })
 }

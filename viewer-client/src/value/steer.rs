@@ -15,7 +15,7 @@ impl Value for StrategyId {
     }
 
     fn read(words: &mut Words<'_>, _: &str, (): &()) -> Result<Self, CommandError> {
-        words.number("N", &range(0, STRATEGIES - 1)).map(Self)
+        range(0, STRATEGIES - 1).read(words, "N").map(Self)
     }
 
     fn text(&self) -> String {
@@ -130,7 +130,7 @@ impl Value for Option<u64> {
         if words.skip("live") {
             return Ok(None);
         }
-        words.number("NUMBER", &range(0, u64::MAX)).map(Some)
+        range(0, u64::MAX).read(words, "NUMBER").map(Some)
     }
 
     fn text(&self) -> String {

@@ -45,7 +45,7 @@ impl Value for Move {
     fn read(words: &mut Words<'_>, name: &str, (): &()) -> Result<Self, CommandError> {
         let word = words.parameter(name)?;
         if word == "before" {
-            return words.choice("NAME").map(Self::Before);
+            return PanelName::read(words, "NAME", &()).map(Self::Before);
         }
         let place = PLACES.into_iter().find(|(known, _)| *known == word).map(|(_, place)| place);
         place.ok_or_else(|| CommandError::no_choice(word, "left, right, up, down, before NAME"))
@@ -158,7 +158,7 @@ impl Value for Source {
         } else if words.skip("settings") {
             Ok(Self::Settings)
         } else {
-            words.choice(name).map(Self::Panel)
+            PanelName::read(words, name, &()).map(Self::Panel)
         }
     }
 

@@ -2,9 +2,6 @@
 
 use thiserror::Error;
 
-use super::choice::words as words_of;
-use super::{Choice, Number, Range};
-
 /// Why a text is no command.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum CommandError {
@@ -106,31 +103,6 @@ impl<'a> Words<'a> {
     /// The next word, which stands for the parameter `name`.
     pub(super) fn parameter(&mut self, name: &str) -> Result<&'a str, CommandError> {
         self.word().ok_or_else(|| CommandError::MissingParameter(name.to_uppercase()))
-    }
-
-    /// A number within `range`; NaN and infinities are none.
-    pub(super) fn number<T: Number>(
-        &mut self,
-        name: &str,
-        range: &Range<T>,
-    ) -> Result<T, CommandError> {
-        let word = self.parameter(name)?;
-        let parameter = name.to_uppercase();
-        let is_finite = word.parse::<f64>().is_ok_and(f64::is_finite);
-        let Some(value) = word.parse().ok().filter(|_| is_finite) else {
-            return Err(CommandError::NotANumber { parameter, found: word.to_owned() });
-        };
-        if range.contains(value) {
-            return Ok(value);
-        }
-        let limits = format!("{} and {}", range.low, range.high);
-        Err(CommandError::OutOfRange { parameter, found: word.to_owned(), limits })
-    }
-
-    /// One of a closed set of words.
-    pub(super) fn choice<T: Choice>(&mut self, name: &str) -> Result<T, CommandError> {
-        let word = self.parameter(name)?;
-        word.parse().ok().ok_or_else(|| CommandError::no_choice(word, &words_of::<T>().join(", ")))
     }
 
     /// All that is left, as it was written.

@@ -246,12 +246,20 @@ pub struct Keeper {
     tried: Preferences,
     /// Since when there is something to write.
     changed: Option<Instant>,
+    /// What went otherwise than it should, and is not told yet.
+    problem: Option<String>,
 }
 
 impl Keeper {
     /// Of a file that holds `preferences`.
     pub fn new(file: PathBuf, preferences: Preferences) -> Self {
-        Self { file, tried: preferences.clone(), written: preferences, changed: None }
+        Self {
+            file,
+            tried: preferences.clone(),
+            written: preferences,
+            changed: None,
+            problem: None,
+        }
     }
 
     /// Takes note of the preferences, and writes them if they have been others for a while. The answer is
@@ -277,17 +285,27 @@ impl Keeper {
         }
     }
 
+    /// What is to be told to the user, once.
+    pub fn problem(&mut self) -> Option<String> {
+        self.problem.take()
+    }
+
     fn write(&mut self, present: Preferences) {
         self.changed = None;
         let name = self.file.display();
-        match file::write(&self.file, &self.written.to_json(), &present.to_json()) {
-            Ok(kept_aside) => {
-                if let Some(place) = kept_aside {
-                    tracing::warn!("{name} was damaged, and is kept as {}", place.display());
-                }
-                self.written.clone_from(&present);
+        let written = file::write(&self.file, &self.written.to_json(), &present.to_json());
+        self.problem = match &written {
+            Ok(None) => None,
+            Ok(Some(place)) => {
+                Some(format!("{name} was damaged, and is kept as {}", place.display()))
             }
-            Err(error) => tracing::warn!("{name} cannot be written: {error}"),
+            Err(error) => Some(format!("settings are not kept: {name} cannot be written: {error}")),
+        };
+        if let Some(problem) = &self.problem {
+            tracing::warn!("{problem}");
+        }
+        if written.is_ok() {
+            self.written.clone_from(&present);
         }
         self.tried = present;
     }

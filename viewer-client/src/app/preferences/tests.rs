@@ -176,7 +176,10 @@ fn a_damaged_file_is_told_and_kept_aside() {
             assert!(complaint.contains(".damaged"), "says what becomes of it: {complaint}");
             assert_eq!(fs::read_to_string(&file).expect("there"), text, "reading changes nothing");
             let changed = after(&read, &["theme light"]);
-            save(&file, &read, &changed);
+            let mut keeper = Keeper::new(file.clone(), read.clone());
+            keeper.finish(changed.clone());
+            let problem = keeper.problem().expect("it is told");
+            assert!(problem.contains(ending), "where it is kept: {problem}");
             let aside = file.with_extension(ending);
             assert_eq!(fs::read_to_string(&aside).expect("kept aside"), text, "round {round}");
             assert_eq!(loaded(&file), changed, "what was set is kept");
@@ -272,6 +275,9 @@ fn a_file_that_cannot_be_written_stays() {
     fs::create_dir_all(&file).expect("a folder in its place");
     let (read, complaints) = Preferences::load(&file);
     assert_eq!(complaints.len(), 1, "{complaints:?}");
-    save(&file, &read, &after(&read, &["theme light"]));
+    let mut keeper = Keeper::new(file.clone(), read.clone());
+    keeper.finish(after(&read, &["theme light"]));
     assert!(file.is_dir(), "as it was");
+    let problem = keeper.problem().expect("it is told");
+    assert!(problem.contains("cannot be written"), "{problem}");
 }

@@ -1,6 +1,7 @@
 //! Rows of settings are as their tables have them.
 
 use egui::accesskit::Role as WidgetRole;
+use egui_kittest::kittest::NodeT as _;
 
 use super::*;
 use crate::command::{CloudSettings, Form, forms};
