@@ -13,8 +13,6 @@ use super::merge::merge;
 const LARGEST: u64 = 256 << 10;
 /// So long is waited for another viewer that writes.
 const LOCK_TIME: Duration = Duration::from_millis(500);
-/// Links of links that are followed.
-const MOST_LINKS: usize = 40;
 
 /// What a file holds.
 #[derive(Debug)]
@@ -53,58 +51,30 @@ pub(super) fn write(file: &Path, base: &Value, ours: &Value) -> io::Result<Optio
     }
     // Two viewers must not read the same, and then each write without the other's.
     let _lock = lock(&with_ending(file, "lock"))?;
-    let place = behind_links(file)?;
     let mut kept_aside = None;
     let nothing = Value::Object(Map::new());
-    let merged = match read(&place)? {
+    let merged = match read(file)? {
         Content::Object(theirs) => merge(base, ours, &modernised(theirs)),
         Content::Nothing => merge(&nothing, ours, &nothing),
         Content::Damaged(_) => {
-            kept_aside = Some(keep_aside(&place)?);
+            kept_aside = Some(keep_aside(file)?);
             merge(&nothing, ours, &nothing)
         }
     };
-    replace(&place, &merged)?;
+    host::file::write(file, format!("{merged:#}\n").as_bytes()).map_err(io::Error::other)?;
     Ok(kept_aside)
 }
 
-/// Puts `value` in the place of a file, so that it is there whole or not at all.
-fn replace(place: &Path, value: &Value) -> io::Result<()> {
-    let fresh = with_ending(place, &format!("new.{}", std::process::id()));
-    let written = fs::write(&fresh, format!("{value:#}\n"))
-        .and_then(|()| match fs::metadata(place) {
-            // Who may read it is for the user to say.
-            Ok(meta) => fs::set_permissions(&fresh, meta.permissions()),
-            Err(_) => Ok(()),
-        })
-        .and_then(|()| File::open(&fresh)?.sync_all())
-        .and_then(|()| fs::rename(&fresh, place));
-    if written.is_err() {
-        // What went wrong is told; whether anything is left to take away is no news.
-        drop(fs::remove_file(&fresh));
+/// Copies a file to a name that nothing has yet.
+fn keep_aside(file: &Path) -> io::Result<PathBuf> {
+    let mut number = 1;
+    let mut place = with_ending(file, "damaged");
+    while fs::symlink_metadata(&place).is_ok() {
+        number += 1;
+        place = with_ending(file, &format!("damaged-{number}"));
     }
-    written
-}
-
-/// Gives a file another name, which no file has.
-fn keep_aside(place: &Path) -> io::Result<PathBuf> {
-    let names = (1..).map(|number| match number {
-        1 => with_ending(place, "damaged"),
-        number => with_ending(place, &format!("damaged-{number}")),
-    });
-    let free = names.into_iter().find(|name| !name.exists()).unwrap_or_default();
-    fs::rename(place, &free)?;
-    Ok(free)
-}
-
-/// Where a file lies that may be a symbolic link, even to nowhere: the link stays one.
-fn behind_links(file: &Path) -> io::Result<PathBuf> {
-    let mut place = file.to_owned();
-    for _ in 0..MOST_LINKS {
-        let Ok(target) = fs::read_link(&place) else { return Ok(place) };
-        place = place.parent().unwrap_or_else(|| Path::new("")).join(target);
-    }
-    Err(io::Error::other("too many symbolic links"))
+    fs::copy(file, &place)?;
+    Ok(place)
 }
 
 /// Locks a file, which is made where it is missing, until the answer is dropped.

@@ -299,7 +299,7 @@ impl Keeper {
             Ok(Some(place)) => {
                 Some(format!("{name} was damaged, and is kept as {}", place.display()))
             }
-            Err(error) => Some(format!("settings are not kept: {name} cannot be written: {error}")),
+            Err(error) => Some(format!("settings are not kept in {name}: {error}")),
         };
         if let Some(problem) = &self.problem {
             tracing::warn!("{problem}");
