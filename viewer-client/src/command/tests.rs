@@ -43,8 +43,10 @@ fn no_two_forms_begin_alike() {
 #[test]
 fn what_help_calls_a_range_is_what_the_parser_takes() {
     let mut count = 0;
+    /// Numbers beyond this one are not all told apart by those of ranges.
+    const EXACT: f64 = (1_u64 << 53) as f64;
     for form in forms().filter(|form| (form.parameters)().len() == 1) {
-        let Some(range) = form.range() else { continue };
+        let Some(range) = form.range().filter(|range| range.high < EXACT) else { continue };
         count += 1;
         let is_taken = |value: f64| format!("{} {value}", form.words).parse::<Command>().is_ok();
         assert!(is_taken(range.low) && is_taken(range.high), "{form:?}: {range}");

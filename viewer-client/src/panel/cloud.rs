@@ -101,7 +101,7 @@ mod tests {
         {
             assert!(shows(&harness, text), "`{text}` is missing");
         }
-        harness.get_by_label("Take in at").hover();
+        harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Take in at").hover();
         harness.run_steps(30);
         assert!(shows(&harness, "threshold of 2014"), "what it was called is told");
     }

@@ -165,8 +165,9 @@ fn slider(
         )
         .labelled_by(label)
     });
-    // A slider also rounds and clamps by itself; only the user's hand counts.
-    let by_hand = response.changed() && moved != value;
+    // A slider also rounds and clamps by itself; only the user's hand counts. No setting has more digits
+    // than these.
+    let by_hand = response.changed() && moved as f32 != value as f32;
     response.on_hover_ui(explain);
     by_hand.then_some(moved)
 }

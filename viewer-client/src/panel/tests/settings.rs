@@ -59,7 +59,7 @@ impl Panel for Rows {
 fn a_row_explains_itself_with_its_keys() {
     let mut harness = Stage::new(Rows).harness();
     harness.run();
-    harness.get_by_label("Width").hover();
+    harness.get_by_role_and_label(WidgetRole::Slider, "Width").hover();
     harness.run_steps(30);
     assert!(
         shows(&harness, "whatever their distance (0.25 to 20 px)"),
