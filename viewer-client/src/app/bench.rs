@@ -20,8 +20,8 @@ use crate::app::Viewer;
 use crate::app::cli::BenchArgs;
 use crate::app::headless::Stage;
 use crate::command::Command;
+use crate::source::Source;
 use crate::source::connection::Delivery;
-use crate::source::status::Status;
 use crate::value::Bounds;
 use crate::value::format;
 
@@ -121,7 +121,7 @@ impl Figures {
 
 fn measure(paths: u32, args: &BenchArgs) -> anyhow::Result<Figures> {
     let mut stage = Stage::like_a_window(args.size)?;
-    let mut viewer = Viewer::new(Status::new("nowhere".to_owned(), true));
+    let mut viewer = Viewer::new(Source::daemon("nowhere".to_owned(), true));
     let corners = [[-REACH; 3], [REACH; 3]];
     viewer.show_bounds(Bounds::of(&corners).context("the box is empty")?);
     for command in LOOK {
@@ -197,7 +197,7 @@ fn fill(viewer: &mut Viewer, paths: u32, vertices: usize) -> Duration {
             continue;
         };
         let started = Instant::now();
-        viewer.take(Delivery { batches: [batch].into(), ..Delivery::default() });
+        viewer.accept(Delivery { batches: [batch].into(), ..Delivery::default() });
         viewer.receive();
         taken += started.elapsed();
     }

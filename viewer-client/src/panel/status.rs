@@ -146,8 +146,8 @@ fn figures(ui: &mut Ui, world: &World<'_>) {
         let waiting = format::bytes(statistics.queued_bytes);
         figure(ui, "waiting", &waiting, &waiting_where(statistics));
     }
-    let bytes = format::bytes(world.status.byte_rate.per_second() as u64);
-    let paths = format::count(world.status.path_rate.per_second());
+    let bytes = format::bytes(world.store.byte_rate() as u64);
+    let paths = format::count(world.store.path_rate());
     figure(ui, "paths/s", &paths, &format!("Paths received a second, {bytes}/s"));
     if let Some(latency) = world.status.latency.filter(|_| world.status.is_connected()) {
         let milliseconds = 1e3 * latency.as_secs_f32();

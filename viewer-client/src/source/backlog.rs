@@ -45,11 +45,6 @@ impl Backlog {
         Some(batch)
     }
 
-    /// Forgets what waits.
-    pub(crate) fn clear(&mut self) {
-        *self = Self::default();
-    }
-
     /// Paths that wait.
     pub(crate) fn paths(&self) -> usize {
         self.paths

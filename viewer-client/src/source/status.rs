@@ -4,9 +4,10 @@ use std::time::{Duration, Instant};
 
 use common::{FilterReply, Role, Statistics, Welcome};
 
-use crate::source::steering::Steering;
+use super::steering::Steering;
+use crate::imaging::Provenance;
 use crate::value::format;
-use crate::value::rates::{History, RateMeter};
+use crate::value::rates::History;
 use crate::value::trends::Trends;
 
 /// How the connection is.
@@ -53,10 +54,6 @@ pub struct Status {
     pub mutation_history: History,
     /// How the chains do over time.
     pub trends: Trends,
-    /// Paths received.
-    pub path_rate: RateMeter,
-    /// Bytes of paths received.
-    pub byte_rate: RateMeter,
     /// How often the connection was made anew.
     pub reconnects: u32,
     /// The answer to the filter that was set last.
@@ -87,8 +84,6 @@ impl Status {
             statistics: None,
             mutation_history: History::default(),
             trends: Trends::default(),
-            path_rate: RateMeter::default(),
-            byte_rate: RateMeter::default(),
             reconnects: 0,
             filter: None,
             steering: Steering::default(),
@@ -134,6 +129,26 @@ impl Status {
         self.welcome.as_ref().map_or(Role::Observer, |w| self.steering.role(w.session))
     }
 
+    /// What is known of the image besides its pixels.
+    pub fn provenance(&self) -> Provenance<'_> {
+        let mut metadata = Vec::new();
+        if let Some(welcome) = &self.welcome {
+            metadata.push(("lvis.scene", welcome.scene_name.clone()));
+            metadata.push(("lvis.scene_hash", welcome.scene_hash.clone()));
+            metadata.push(("lvis.version", welcome.server_version.clone()));
+        }
+        if let Some(statistics) = &self.statistics {
+            metadata.push(("lvis.b", statistics.normalization.to_string()));
+            let error = statistics.normalization_error;
+            metadata.push(("lvis.b_standard_error", error.to_string()));
+        }
+        Provenance {
+            scene: self.welcome.as_ref().map(|welcome| welcome.scene_name.as_str()),
+            metadata,
+            diagnostics: self.statistics.as_ref().and_then(|s| s.diagnostics.as_deref()),
+        }
+    }
+
     /// Says something to the user.
     pub fn say(&mut self, said: Result<String, String>) {
         let is_bad = said.is_err();
@@ -142,18 +157,20 @@ impl Status {
         self.notice = Some(Notice { text, is_bad, at: Instant::now() });
     }
 
-    /// Takes a daemon's welcome; it is another daemon, or the same one anew.
+    /// Another session begins. What was told in the one before is void; where the daemon is, how often
+    /// it was reached and what was said to the user is not.
     pub fn welcome(&mut self, welcome: Welcome) {
-        if self.welcome.is_some() {
-            self.reconnects += 1;
-        }
-        self.welcome = Some(welcome);
-        self.statistics = None;
-        self.filter = None;
-        self.latency = None;
-        self.steering.clear();
-        self.mutation_history.clear();
-        self.trends.clear();
+        let fresh = Self::new(std::mem::take(&mut self.address), self.embedded);
+        let reconnects = self.reconnects + u32::from(self.welcome.is_some());
+        *self = Self {
+            link: self.link.clone(),
+            welcome: Some(welcome),
+            reconnects,
+            heard: self.heard,
+            listened: self.listened,
+            notice: self.notice.take(),
+            ..fresh
+        };
     }
 
     /// Takes new counts.

@@ -124,7 +124,8 @@ impl Link {
     }
 
     /// Sets which paths come; blank for all. The daemon answers with a reply of the same `revision`,
-    /// which must be at least 1 and grow. The filter is set again when the connection is.
+    /// which must be at least 1 and grow. It must be set again when the connection is: a daemon that
+    /// comes back may have a scene that cannot read it.
     pub fn set_filter(&self, revision: u32, text: String) -> bool {
         self.say(ViewerEvent::SetFilter(WantedFilter { revision, text }))
     }
@@ -213,10 +214,8 @@ impl Keeper {
 
     /// Keeps in mind what the next session begins with.
     fn remember(&mut self, event: &ViewerEvent) {
-        match event {
-            ViewerEvent::SetFilter(filter) => self.greeting.filter = Some(filter.clone()),
-            ViewerEvent::SetFocus(on) => self.greeting.focus = *on,
-            _ => {}
+        if let ViewerEvent::SetFocus(on) = event {
+            self.greeting.focus = *on;
         }
     }
 
