@@ -9,8 +9,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant};
 
-use common::{LeaseRequest, Notice, Order, Presence, Role};
-use proto::TracerEvent;
+use common::{LeaseRequest, Notice, Order, Presence, Role, TracerEvent};
 use tracer_server::chain::EnsembleSettings;
 use tracer_server::daemon::{Daemon, DaemonOptions};
 use tracer_server::scene::Scene;

@@ -1,10 +1,13 @@
 //! Filters in the daemon as it ships: exact paths, exact counts, changed while the paths stream.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use common::{CompiledFilter, Filter, FilterReply, FilterScene, Gap, PathBatch, Role, Statistics};
+use common::{
+    CompiledFilter, Filter, FilterReply, FilterScene, Gap, PathBatch, Role, Statistics, TracerEvent,
+};
 use proto::v1::tracer_client::TracerClient;
-use proto::{Hello, ProtocolVersion, SceneAssembler, TracerEvent, ViewerEvent, WantedFilter, v1};
+use proto::{Hello, ProtocolVersion, SceneAssembler, ViewerEvent, WantedFilter, v1};
 use tokio::sync::mpsc;
 use tokio_stream::wrappers::ReceiverStream;
 use tonic::transport::Channel;
@@ -75,8 +78,8 @@ impl Viewer {
         &mut self,
         revision: u32,
         mut content: impl FnMut(&PathBatch) -> bool,
-    ) -> Statistics {
-        let mut statistics = Statistics::default();
+    ) -> Arc<Statistics> {
+        let mut statistics = Arc::<Statistics>::default();
         let mut is_content = false;
         // Batches that were ready when the filter changed come first.
         while !(is_content && statistics.filter.seen > 0) {

@@ -4,12 +4,13 @@
 //! "CPU side" is the time until all commands are recorded, without what draws them.
 
 use std::io::{self, Write as _};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
 use common::{
     BatchBuilder, BatchLimits, ChainId, Event, PathBatch, PathHeader, PathId, StrategyId,
-    VertexKind, VertexRecord,
+    TracerEvent, VertexKind, VertexRecord,
 };
 use cpu_time::ProcessTime;
 use rand_core::{Rng as _, SeedableRng as _};
@@ -21,7 +22,6 @@ use crate::app::cli::BenchArgs;
 use crate::app::headless::Stage;
 use crate::command::Command;
 use crate::source::Source;
-use crate::source::connection::Delivery;
 use crate::value::Bounds;
 use crate::value::format;
 
@@ -197,7 +197,9 @@ fn fill(viewer: &mut Viewer, paths: u32, vertices: usize) -> Duration {
             continue;
         };
         let started = Instant::now();
-        viewer.accept(Delivery { batches: [batch].into(), ..Delivery::default() });
+        if let Some(inbox) = viewer.inbox() {
+            inbox.hear(TracerEvent::Paths(Arc::new(batch)));
+        }
         viewer.receive();
         taken += started.elapsed();
     }

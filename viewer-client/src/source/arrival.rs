@@ -3,9 +3,9 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use common::{FilterReply, Notice, Welcome};
+use common::{FilterReply, Notice, TracerEvent, Welcome};
 
-use super::connection::{Delivery, FocusNews};
+use super::connection::Arrival;
 use super::model::Model;
 use super::shown::Shown;
 use super::{Origin, Source};
@@ -30,75 +30,71 @@ impl Source {
     /// Takes in what has come.
     pub fn receive(&mut self, settings: &Settings) -> Arrived {
         let before = self.shown.store.counts();
-        let delivery = match &self.origin {
-            Origin::Daemon(daemon) => daemon.delivery(),
-            Origin::Nothing | Origin::File(_) => Delivery::default(),
-        };
-        let mut news = !delivery.is_empty();
-        self.status.listen(news, Instant::now());
-        let session = delivery.welcome.is_some();
-        self.accept(delivery, settings);
-        if let Origin::Daemon(daemon) = &mut self.origin {
-            let threshold = settings.cloud.threshold as usize;
-            for _ in 0..BATCHES_PER_FRAME {
-                let Some(batch) = daemon.next_batch(threshold) else { break };
-                self.shown.take_in(&batch, settings.cloud.frozen);
-            }
-            if daemon.filter_is_due(HAND, &settings.filter.wanted()) {
-                self.judge(settings);
-                self.ask_for_paths(settings);
-            }
+        let (mut news, mut arrivals) = (false, VecDeque::new());
+        if let Origin::Daemon(daemon) = &self.origin {
+            daemon.inbox().set_limit(settings.cloud.limit as usize);
+            news = daemon.inbox().has_news();
+            arrivals = daemon.inbox().take_arrivals();
         }
+        self.status.listen(news, Instant::now());
+        let remarks = self.status.steering.remark_count;
+        let mut session = false;
+        for arrival in arrivals {
+            session |= matches!(arrival, Arrival::Said(TracerEvent::Welcome(_)));
+            self.accept(arrival, settings);
+        }
+        self.show_remark(remarks);
+        self.take_in_paths(settings);
         self.shown.store.measure(self.since.elapsed().as_secs_f64());
         news |= self.shown.store.counts() != before;
         Arrived { news, session }
     }
 
-    /// Takes in a delivery; public for harnesses without a network.
-    pub fn accept(&mut self, delivery: Delivery, settings: &Settings) {
-        if let Some(welcome) = delivery.welcome {
-            self.begin_session(welcome, settings);
+    fn take_in_paths(&mut self, settings: &Settings) {
+        let Origin::Daemon(daemon) = &mut self.origin else { return };
+        for _ in 0..BATCHES_PER_FRAME {
+            let Some(batch) = daemon.next_batch(settings.cloud.threshold as usize) else { break };
+            self.shown.take_in(&batch, settings.cloud.frozen);
         }
-        if let Some(scene) = delivery.scene {
-            self.set_model(Model::new(scene.mesh), settings);
+        if daemon.filter_is_due(HAND, &settings.filter.wanted()) {
+            self.judge(settings);
+            self.ask_for_paths(settings);
         }
-        if let Some(statistics) = delivery.statistics {
-            self.status.statistics(statistics);
+    }
+
+    fn accept(&mut self, arrival: Arrival, settings: &Settings) {
+        match arrival {
+            Arrival::Link(state) => self.status.link = state,
+            Arrival::Scene(scene) => self.set_model(Model::new(scene.mesh), settings),
+            Arrival::Latency(latency) => self.status.latency = Some(latency),
+            Arrival::Said(event) => self.hear(event, settings),
         }
-        for news in delivery.focus {
-            let focus = &mut self.status.steering.focus;
-            match news {
-                FocusNews::Path(path) => focus.take_path(path),
-                FocusNews::Step(step) => focus.take_step(step),
-                FocusNews::Gap(steps) => focus.miss(steps),
+    }
+
+    fn hear(&mut self, event: TracerEvent, settings: &Settings) {
+        let steering = &mut self.status.steering;
+        match event {
+            TracerEvent::Welcome(welcome) => self.begin_session(*welcome, settings),
+            TracerEvent::Statistics(statistics) => self.status.statistics(statistics),
+            TracerEvent::FilterReply(reply) => self.accept_filter(reply, settings),
+            TracerEvent::Notice(Notice::Detail(reply)) => self.accept_detail(*reply),
+            TracerEvent::Notice(notice) => steering.accept(notice),
+            TracerEvent::FocusPath(path) => steering.focus.take_path(path),
+            TracerEvent::FocusStep(step) => steering.focus.take_step(step),
+            TracerEvent::FocusGap(steps) => steering.focus.miss(steps),
+            TracerEvent::Film(tile) => {
+                if !self.shown.image.film.accept(&tile) {
+                    tracing::warn!("a tile of the image contradicts itself and was left out");
+                }
             }
-        }
-        self.accept_notices(delivery.notices);
-        if let Some(reply) = delivery.filter {
-            self.accept_filter(reply, settings);
-        }
-        for tile in delivery.explorer_film.values() {
-            if !self.status.steering.film.accept(tile) {
-                tracing::warn!("a tile of the explorer's film contradicts itself and was left out");
+            TracerEvent::ExplorerFilm(tile) => {
+                if !steering.film.accept(&tile) {
+                    tracing::warn!("a tile of the explorer's film contradicts itself");
+                }
             }
-        }
-        for tile in delivery.film.values() {
-            if !self.shown.image.film.accept(tile) {
-                tracing::warn!("a tile of the image contradicts itself and was left out");
-            }
-        }
-        if delivery.gaps > 0 {
-            self.shown.store.note_gap(delivery.gap.paths);
-        }
-        if let Origin::Daemon(daemon) = &mut self.origin {
-            let gone = daemon.let_wait(delivery.batches, settings.cloud.limit as usize);
-            if gone > 0 {
-                self.shown.store.note_gap(gone as u64);
-            }
-        }
-        self.status.latency = delivery.latency.or(self.status.latency);
-        if let Some(state) = delivery.state {
-            self.status.link = state;
+            TracerEvent::Gap(gap) => self.shown.store.note_gap(gap.paths),
+            TracerEvent::Paths(batch) => self.shown.take_in(&batch, settings.cloud.frozen),
+            TracerEvent::SnapshotEnd | TracerEvent::Goodbye(_) | TracerEvent::Unknown => {}
         }
     }
 
@@ -131,16 +127,9 @@ impl Source {
         }
     }
 
-    /// Takes in what the daemon tells of those who steer, and shows its last remark.
-    fn accept_notices(&mut self, notices: VecDeque<Notice>) {
-        let remarks = self.status.steering.remark_count;
-        for notice in notices {
-            match notice {
-                Notice::Detail(reply) => self.accept_detail(*reply),
-                notice => self.status.steering.accept(notice),
-            }
-        }
-        if self.status.steering.remark_count != remarks
+    /// Shows the last remark of those who steer, where there was one since there were `before`.
+    fn show_remark(&mut self, before: u64) {
+        if self.status.steering.remark_count != before
             && let Some(remark) = self.status.steering.remark.clone()
         {
             self.status.say(remark);

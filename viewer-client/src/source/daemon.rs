@@ -1,11 +1,11 @@
 //! A daemon as it is watched: the connection, what was asked of it, and what waits to be taken in.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use common::{Appearance, FilterReply, Order, PathBatch, PathId};
 
-use super::backlog::Backlog;
-use super::connection::{Delivery, Link};
+use super::connection::{Inbox, Link};
 
 /// The others are told of a new point of view this often at most.
 const APPEARANCE: Duration = Duration::from_millis(500);
@@ -14,13 +14,14 @@ const APPEARANCE: Duration = Duration::from_millis(500);
 #[derive(Debug, Default)]
 pub struct Daemon {
     link: Option<Link>,
+    /// Where what comes waits to be taken in.
+    inbox: Arc<Inbox>,
     /// Orders given so far: the number of the last one.
     orders: u32,
     /// Which paths it was asked for.
     wanted: WantedPaths,
     /// What the others were shown of this viewer last, and when.
     appearance: Option<(Appearance, Instant)>,
-    waiting: Backlog,
 }
 
 /// Which paths a daemon was asked for.
@@ -41,17 +42,13 @@ struct WantedPaths {
 impl Daemon {
     /// Takes over a connection.
     pub(super) fn attach(&mut self, link: Link) {
+        self.inbox = Arc::clone(link.inbox());
         self.link = Some(link);
     }
 
-    /// Everything that came over the connection.
-    pub(super) fn delivery(&self) -> Delivery {
-        self.link.as_ref().map(Link::take).unwrap_or_default()
-    }
-
-    /// True when something came that is not taken in.
-    pub fn has_news(&self) -> bool {
-        self.link.as_ref().is_some_and(Link::has_news)
+    /// Where what comes waits to be taken in.
+    pub fn inbox(&self) -> &Inbox {
+        &self.inbox
     }
 
     /// Ends the wait for the next attempt to connect.
@@ -88,9 +85,8 @@ impl Daemon {
         }
     }
 
-    /// A session begins: what waited was of the one before, and nobody there has seen this viewer.
+    /// A session begins, in which nobody has seen this viewer.
     pub(super) fn begin_session(&mut self) {
-        self.waiting = Backlog::default();
         self.appearance = None;
     }
 
@@ -140,34 +136,9 @@ impl Daemon {
         self.wanted.changed.is_none() && self.wanted.answered == self.wanted.revision
     }
 
-    /// Lets more batches wait. Where more than `limit` paths would, the oldest go; answers how many
-    /// paths went.
-    pub(super) fn let_wait(
-        &mut self,
-        batches: impl IntoIterator<Item = PathBatch>,
-        limit: usize,
-    ) -> usize {
-        self.waiting.extend(batches, limit)
-    }
-
     /// The next batch of the filter in force, once `threshold` paths have waited for it.
-    pub(super) fn next_batch(&mut self, threshold: usize) -> Option<PathBatch> {
-        while self.waiting.is_due(threshold) {
-            let batch = self.waiting.pop()?;
-            if batch.origin().revision >= self.wanted.in_force {
-                return Some(batch);
-            }
-        }
-        None
-    }
-
-    /// True when paths wait that are to be taken in now.
-    pub fn has_paths(&mut self, threshold: usize) -> bool {
-        self.waiting.is_due(threshold)
-    }
-
-    /// Paths that have come and are not taken in yet.
-    pub fn waiting(&self) -> usize {
-        self.waiting.paths()
+    pub(super) fn next_batch(&self, threshold: usize) -> Option<Arc<PathBatch>> {
+        let mut batches = std::iter::from_fn(|| self.inbox.next_batch(threshold));
+        batches.find(|batch| batch.origin().revision >= self.wanted.in_force)
     }
 }

@@ -6,7 +6,6 @@
 //! session begins anew.
 
 mod arrival;
-mod backlog;
 pub mod connection;
 mod daemon;
 mod detail;
@@ -147,10 +146,10 @@ impl Source {
     }
 
     /// True when the picture moves by itself, and the next frame should not wait.
-    pub fn is_moving(&mut self, settings: &Settings) -> bool {
-        match &mut self.origin {
+    pub fn is_moving(&self, settings: &Settings) -> bool {
+        match &self.origin {
             Origin::Nothing => false,
-            Origin::Daemon(daemon) => daemon.has_paths(settings.cloud.threshold as usize),
+            Origin::Daemon(daemon) => daemon.inbox().has_paths(settings.cloud.threshold as usize),
             Origin::File(playback) => playback.is_playing(),
         }
     }

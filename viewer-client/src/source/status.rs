@@ -1,5 +1,6 @@
 //! What is known of the daemon and of the way to it.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use common::{FilterReply, Role, Statistics, Welcome};
@@ -49,7 +50,7 @@ pub struct Status {
     /// What the daemon said of itself.
     pub welcome: Option<Welcome>,
     /// The newest counts.
-    pub statistics: Option<Statistics>,
+    pub statistics: Option<Arc<Statistics>>,
     /// Mutations a second over the last minutes.
     pub mutation_history: History,
     /// How the chains do over time.
@@ -174,7 +175,8 @@ impl Status {
     }
 
     /// Takes new counts.
-    pub fn statistics(&mut self, statistics: Statistics) {
+    pub fn statistics(&mut self, statistics: impl Into<Arc<Statistics>>) {
+        let statistics = statistics.into();
         self.mutation_history.push(statistics.mutations_per_second as f32);
         self.trends.push(&statistics);
         self.statistics = Some(statistics);

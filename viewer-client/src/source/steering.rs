@@ -81,7 +81,7 @@ pub struct Moment {
     /// The current path before the step.
     pub before: Arc<FocusPath>,
     /// The step.
-    pub step: FocusStep,
+    pub step: Arc<FocusStep>,
 }
 
 impl Moment {
@@ -131,7 +131,8 @@ impl Focus {
 
     /// Takes in a whole path. Where it is not the one that the explorer stood at, a walk begins, and the
     /// steps of the one before are forgotten; after missed steps, it may be the same walk.
-    pub fn take_path(&mut self, path: FocusPath) {
+    pub fn take_path(&mut self, path: impl Into<Arc<FocusPath>>) {
+        let path = path.into();
         let goes_on = match (&self.current, self.moments.back()) {
             (Some(current), _) => current.vertices == path.vertices,
             (None, Some(last)) => last.step.id.epoch == path.header.id.epoch,
@@ -144,11 +145,12 @@ impl Focus {
             // The timeline of another walk is at its end.
             self.scrub = None;
         }
-        self.current = Some(Arc::new(path));
+        self.current = Some(path);
     }
 
     /// Takes in a step. One that does not follow what is known is left out and counted as missed.
-    pub fn take_step(&mut self, step: FocusStep) {
+    pub fn take_step(&mut self, step: impl Into<Arc<FocusStep>>) {
+        let step = step.into();
         let next = self.current.as_ref().and_then(|path| path.after(&step));
         let Some((before, next)) = self.current.take().zip(next) else {
             self.missed += 1;

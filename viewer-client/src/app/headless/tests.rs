@@ -4,8 +4,7 @@ use image::{Rgba, RgbaImage};
 
 use super::*;
 use crate::source::Source;
-use crate::source::connection::Delivery;
-use crate::synthetic::delivery;
+use crate::synthetic::{Delivery, delivery};
 
 pub(super) const SIZE: [u32; 2] = [1280, 720];
 
@@ -34,7 +33,7 @@ pub(super) fn picture_of(stage: &mut Stage, delivery: Delivery, commands: &[&str
     for command in filter {
         viewer.apply(command.parse().expect(command));
     }
-    viewer.accept(delivery);
+    delivery.put(viewer.inbox().expect("a daemon"));
     viewer.receive();
     let fixed = ["camera view front", "scene grid off", "scene camera off", "cloud ends off"];
     for command in fixed.into_iter().chain(commands) {

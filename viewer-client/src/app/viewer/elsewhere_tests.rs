@@ -1,9 +1,11 @@
 //! Whoever goes elsewhere finds what someone finds who comes there first.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use common::{
     ChainState, ExplorerState, FocusPath, Notice, PathHeader, PathId, Presence, Statistics,
+    TracerEvent,
 };
 use egui_kittest::Harness;
 use egui_kittest::kittest::NodeT as _;
@@ -11,10 +13,9 @@ use egui_kittest::kittest::NodeT as _;
 use super::*;
 use crate::command::{PanelName, Source as Part};
 use crate::imaging::Reference;
-use crate::source::connection::FocusNews;
 use crate::source::dump::tests::stage;
 use crate::source::selection::Selection;
-use crate::synthetic::delivery;
+use crate::synthetic::{Delivery, delivery};
 
 const PATH: &[[f32; 3]] = &[[-400.0, 150.0, -400.0], [400.0, 150.0, -400.0]];
 
@@ -44,11 +45,11 @@ impl Place {
     }
 
     /// What comes there.
-    fn deliveries(self) -> Vec<Delivery> {
+    fn delivery(self) -> Option<Delivery> {
         match self {
-            Self::BuiltIn | Self::Remote => vec![session(delivery(&[PATH, PATH]))],
-            Self::OtherScene => vec![session(other_scene())],
-            Self::File | Self::Nothing => Vec::new(),
+            Self::BuiltIn | Self::Remote => Some(session(delivery(&[PATH, PATH]))),
+            Self::OtherScene => Some(session(other_scene())),
+            Self::File | Self::Nothing => None,
         }
     }
 }
@@ -64,34 +65,28 @@ fn session(delivery: Delivery) -> Delivery {
         normalization_error: 1e-4,
         ..Statistics::default()
     };
-    let notices = [
-        Notice::Presence(Presence::default()),
-        Notice::Explorer(ExplorerState::default()),
-        Notice::Chains(ChainState { running: true, ..ChainState::default() }),
+    let more = vec![
+        TracerEvent::Notice(Notice::Presence(Presence::default())),
+        TracerEvent::Notice(Notice::Explorer(ExplorerState::default())),
+        TracerEvent::Notice(Notice::Chains(ChainState { running: true, ..ChainState::default() })),
+        TracerEvent::Statistics(Arc::new(statistics)),
+        TracerEvent::FocusPath(Arc::new(FocusPath { header, vertices, next: 1 })),
+        TracerEvent::ExplorerFilm(delivery.film.clone()),
     ];
-    Delivery {
-        statistics: Some(statistics),
-        notices: notices.into(),
-        focus: [FocusNews::Path(FocusPath { header, vertices, next: 1 })].into(),
-        explorer_film: delivery.film.clone(),
-        ..delivery
-    }
+    Delivery { more, ..delivery }
 }
 
 fn other_scene() -> Delivery {
     let mut delivery = delivery(&[PATH]);
-    if let Some(welcome) = &mut delivery.welcome {
-        "another".clone_into(&mut welcome.scene_hash);
-        "another room".clone_into(&mut welcome.scene_name);
-        welcome.strategies = vec!["caustic".to_owned()];
-        welcome.max_edges = 7;
-    }
-    if let Some(scene) = &mut delivery.scene {
-        "another".clone_into(&mut scene.hash);
-        scene.mesh.positions.iter_mut().flatten().for_each(|x| *x *= 0.5);
-        scene.mesh.materials.truncate(1);
-        scene.mesh.triangle_materials.fill(0);
-    }
+    let Delivery { welcome, scene, .. } = &mut delivery;
+    "another".clone_into(&mut welcome.scene_hash);
+    "another room".clone_into(&mut welcome.scene_name);
+    welcome.strategies = vec!["caustic".to_owned()];
+    welcome.max_edges = 7;
+    "another".clone_into(&mut scene.hash);
+    scene.mesh.positions.iter_mut().flatten().for_each(|x| *x *= 0.5);
+    scene.mesh.materials.truncate(1);
+    scene.mesh.triangle_materials.fill(0);
     delivery
 }
 
@@ -109,8 +104,8 @@ fn open(place: Place) -> Window {
 /// Everything comes, and the window comes to rest.
 fn arrive(window: &mut Window, place: Place) {
     let viewer = window.state_mut();
-    for delivery in place.deliveries() {
-        viewer.accept(delivery);
+    if let Some(delivery) = place.delivery() {
+        delivery.put(viewer.inbox().expect("a daemon"));
     }
     viewer.receive();
     window.run_steps(6);
@@ -220,11 +215,13 @@ fn a_daemon_that_comes_back_with_another_scene_shows_it() {
     let expected = offered(&mut open(Place::OtherScene));
     let mut window = open(Place::OtherScene);
     let viewer = window.state_mut();
-    viewer.accept(session(delivery(&[PATH, PATH])));
+    session(delivery(&[PATH, PATH])).put(viewer.inbox().expect("a daemon"));
     viewer.receive();
     leave_traces(&mut window);
-    // The script of a viewer waits for whatever comes.
-    window.state_mut().source.script.clear();
+    // A script waits for whatever comes, and a word to the user stays until it has been read.
+    let source = &mut window.state_mut().source;
+    source.script.clear();
+    source.status.notice = None;
     arrive(&mut window, Place::OtherScene);
     // How often it came back is told.
     assert_eq!(window.state().status().reconnects, 2, "twice");

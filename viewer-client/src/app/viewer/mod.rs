@@ -22,7 +22,7 @@ use crate::imaging::{Finding, Job};
 use crate::keys;
 use crate::panel::{self, NOTICE_TIME, Panel, Slot};
 use crate::settings::Settings;
-use crate::source::connection::{Delivery, Link};
+use crate::source::connection::{Inbox, Link};
 use crate::source::model::Model;
 use crate::source::status::{LinkState, Status};
 use crate::source::store::PAGE_POINTS;
@@ -141,7 +141,9 @@ impl Viewer {
         let Source { origin, shown, status, script, .. } = &self.source;
         let threshold = self.settings.cloud.threshold as usize;
         let agrees = match origin {
-            Origin::Daemon(daemon) => daemon.waiting() <= threshold && daemon.agrees_on_paths(),
+            Origin::Daemon(daemon) => {
+                daemon.inbox().paths() <= threshold && daemon.agrees_on_paths()
+            }
             Origin::Nothing | Origin::File(_) => true,
         };
         let whole = shown.model.is_some() && shown.image.film.size() != [0, 0];
@@ -154,9 +156,14 @@ impl Viewer {
         &self.source.status
     }
 
+    /// Where what comes from the daemon waits: for harnesses without a network.
+    pub fn inbox(&self) -> Option<&Inbox> {
+        self.source.as_daemon().map(Daemon::inbox)
+    }
+
     /// True when something has come that is not taken in.
     pub fn has_news(&self) -> bool {
-        self.source.as_daemon().is_some_and(Daemon::has_news)
+        self.inbox().is_some_and(Inbox::has_news)
     }
 
     /// True while the user wants the paths to stand still.
@@ -176,12 +183,6 @@ impl Viewer {
             self.go_on();
         }
         arrived.news || finished
-    }
-
-    /// Takes in a delivery: for harnesses without a network.
-    pub fn accept(&mut self, delivery: Delivery) {
-        self.source.accept(delivery, &self.settings);
-        self.go_on();
     }
 
     /// Goes on with the script as far as what has come allows.
@@ -411,7 +412,7 @@ impl Viewer {
             playback,
             counted: shown.counted.as_ref(),
             scrub: status.steering.focus.scrub,
-            waiting: self.source.as_daemon().map_or(0, Daemon::waiting),
+            waiting: self.inbox().map_or(0, Inbox::paths),
             recent: &self.desktop.habits.recent,
             has_home: self.desktop.home.is_some(),
             model: shown.model.as_ref(),
@@ -420,7 +421,7 @@ impl Viewer {
     }
 
     /// Countdowns run by themselves.
-    fn keep_time(&mut self, ctx: &egui::Context) {
+    fn keep_time(&self, ctx: &egui::Context) {
         if let Some(notice) = &self.source.status.notice {
             let left = NOTICE_TIME.saturating_sub(notice.at.elapsed());
             if !left.is_zero() {

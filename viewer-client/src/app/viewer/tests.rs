@@ -2,19 +2,30 @@
 
 use std::sync::Arc;
 
-use common::{DetailReply, FilterReply, Notice, PathDetail, PathId, VertexDetail};
+use common::{DetailReply, FilterReply, Notice, PathDetail, PathId, TracerEvent, VertexDetail};
 
 use super::*;
-use crate::source::connection::Delivery;
 use crate::source::dump::Stage;
 use crate::source::dump::tests::{STEPS, stage};
 use crate::source::playback::Playback;
 use crate::source::selection::{Detail, Selection};
-use crate::synthetic::delivery;
+use crate::synthetic::{Delivery, delivery};
 
 /// A viewer of a daemon that nobody has connected to yet.
 fn daemon() -> Viewer {
     Viewer::new(Source::daemon("127.0.0.1:50061".to_owned(), false))
+}
+
+/// Takes in what has come.
+fn take_in(viewer: &mut Viewer, delivery: Delivery) {
+    delivery.put(viewer.inbox().expect("a daemon"));
+    viewer.receive();
+}
+
+/// Takes in what the tracer says.
+fn hear(viewer: &mut Viewer, event: TracerEvent) {
+    viewer.inbox().expect("a daemon").hear(event);
+    viewer.receive();
 }
 
 /// A viewer of a file of paths.
@@ -71,37 +82,32 @@ fn a_file_is_shown_played_and_picked() {
 fn paths_of_the_filter_before_are_left_out() {
     let path: &[[f32; 3]] = &[[1.0, 2.0, 3.0], [4.0, 6.0, 3.0]];
     let mut viewer = daemon();
-    viewer.accept(delivery(&[path, path]));
-    viewer.receive();
+    take_in(&mut viewer, delivery(&[path, path]));
     assert_eq!(viewer.source.shown.store.len(), 2, "all paths");
     let refused = FilterReply {
         revision: 1,
         error: Some(common::FilterError { span: 0..1, message: "odd".to_owned() }),
         ..FilterReply::default()
     };
-    viewer.accept(Delivery { filter: Some(refused), ..Delivery::default() });
+    hear(&mut viewer, TracerEvent::FilterReply(refused));
     assert_eq!(viewer.source.shown.store.len(), 2, "a refused filter changes nothing");
     assert!(viewer.source.status.notice.as_ref().is_some_and(|n| n.is_bad), "but is told");
     let reply = FilterReply { revision: 2, ..FilterReply::default() };
-    viewer.accept(Delivery { filter: Some(reply), ..Delivery::default() });
+    hear(&mut viewer, TracerEvent::FilterReply(reply));
     assert_eq!(viewer.source.shown.store.len(), 0, "others are on their way");
-    let late = Delivery { batches: delivery(&[path]).batches, ..Delivery::default() };
-    viewer.accept(late);
-    viewer.receive();
+    hear(&mut viewer, of_filter(1, path));
     assert_eq!(viewer.source.shown.store.len(), 0, "these were chosen before");
-    viewer.accept(Delivery { batches: of_filter(2, path), ..Delivery::default() });
-    viewer.receive();
+    hear(&mut viewer, of_filter(2, path));
     assert_eq!(viewer.source.shown.store.len(), 1, "those of the filter in force are kept");
 }
 
 #[test]
 fn what_is_held_is_judged_by_the_filter() {
     let mut viewer = daemon();
-    viewer.accept(delivery(&[
-        &[[-400.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
-        &[[0.0, 300.0, 0.0], [50.0, 0.0, 0.0]],
-    ]));
-    viewer.receive();
+    take_in(
+        &mut viewer,
+        delivery(&[&[[-400.0, 0.0, 0.0], [0.0, 0.0, 0.0]], &[[0.0, 300.0, 0.0], [50.0, 0.0, 0.0]]]),
+    );
     let mut run = |command: &str| {
         viewer.apply(command.parse().expect("a command"));
         viewer.source.judge(&viewer.settings);
@@ -132,8 +138,7 @@ fn a_file_of_paths_is_filtered_and_counted() {
 #[test]
 fn numbers_are_kept_with_the_path_that_they_are_about() {
     let mut viewer = daemon();
-    viewer.accept(delivery(&[&[[-400.0, 0.0, 0.0], [400.0, 0.0, 0.0]]]));
-    viewer.receive();
+    take_in(&mut viewer, delivery(&[&[[-400.0, 0.0, 0.0], [400.0, 0.0, 0.0]]]));
     let batch = crate::synthetic::batch(&[&[[-400.0, 0.0, 0.0], [400.0, 0.0, 0.0]]]);
     let mut reader = batch.reader();
     let path = reader.next().expect("a path");
@@ -145,8 +150,8 @@ fn numbers_are_kept_with_the_path_that_they_are_about() {
         "there is nobody to ask"
     );
     let mut told = |path: PathId, found| {
-        let reply = Notice::Detail(Box::new(DetailReply { path, found }));
-        viewer.accept(Delivery { notices: [reply].into(), ..Delivery::default() });
+        let reply = Box::new(DetailReply { path, found });
+        hear(&mut viewer, TracerEvent::Notice(Notice::Detail(reply)));
         detail(&viewer)
     };
     let numbers = |count| PathDetail {
@@ -165,16 +170,15 @@ fn numbers_are_kept_with_the_path_that_they_are_about() {
     let welcome = viewer.source.status.welcome.as_mut().expect("a daemon");
     welcome.frame.scale = 4.0;
     let reply = DetailReply { path: PathId::default(), found: Ok(numbers(3)) };
-    let notices = [Notice::Detail(Box::new(reply))].into();
-    viewer.accept(Delivery { notices, ..Delivery::default() });
+    hear(&mut viewer, TracerEvent::Notice(Notice::Detail(Box::new(reply))));
     let numbers = viewer.source.shown.selection.as_ref().and_then(Selection::numbers);
     let geometry = numbers.map(|numbers| numbers.geometry.as_slice());
     assert_eq!(geometry, Some([16.0; 2].as_slice()), "per square unit of the scene file");
 }
 
 /// One batch with a path, of the filter of this number.
-fn of_filter(revision: u32, path: &[[f32; 3]]) -> std::collections::VecDeque<common::PathBatch> {
+fn of_filter(revision: u32, path: &[[f32; 3]]) -> TracerEvent {
     let batch = crate::synthetic::batch(&[path]);
     let origin = common::BatchOrigin { revision, ..*batch.origin() };
-    [batch.with_origin(origin).expect("a sound origin")].into()
+    TracerEvent::Paths(Arc::new(batch.with_origin(origin).expect("a sound origin")))
 }
