@@ -175,7 +175,7 @@ async fn a_filter_changes_while_paths_stream_and_counts_stay_exact() {
                 paths > 100 && seen > matched
             })
             .await;
-        let counts = statistics.filter;
+        let counts = statistics.filter.clone();
         assert!(seen > matched && matched > 100, "some match, some do not: {matched} of {seen}");
         let share = counts.matched_steps / counts.seen_steps;
         assert!((counts.energy_share - share).abs() < 1e-12, "{counts:?}");
@@ -248,7 +248,7 @@ async fn what_is_no_filter_is_refused_with_its_place_and_harms_nothing() {
     let error = reply.error.expect("no number");
     assert_eq!((reply.revision, error.span), (2, 9..14), "{}", error.message);
     let statistics = viewer.watch(1, |batch| !batch.is_empty()).await;
-    let counts = statistics.filter;
+    let counts = statistics.filter.clone();
     assert!(
         0 < counts.matched && counts.matched < counts.seen,
         "the first is in force: {counts:?}"

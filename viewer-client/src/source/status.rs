@@ -69,7 +69,12 @@ pub struct Status {
     listened: Option<Instant>,
     /// The newest word to the user.
     pub notice: Option<Notice>,
+    /// What went wrong, the oldest first.
+    failures: Vec<String>,
 }
+
+/// Failures that are kept for whoever asks.
+const MOST_FAILURES: usize = 64;
 
 /// A daemon that says nothing for so long does not answer.
 pub const SILENCE: Duration = Duration::from_secs(3);
@@ -92,6 +97,7 @@ impl Status {
             heard: None,
             listened: None,
             notice: None,
+            failures: Vec::new(),
         }
     }
 
@@ -155,7 +161,15 @@ impl Status {
         let is_bad = said.is_err();
         let text = said.unwrap_or_else(|problem| problem);
         let text = format::sentence(&text);
+        if is_bad && self.failures.len() < MOST_FAILURES {
+            self.failures.push(text.clone());
+        }
         self.notice = Some(Notice { text, is_bad, at: Instant::now() });
+    }
+
+    /// What went wrong since this was asked last: for whoever has no window to read notices in.
+    pub fn take_failures(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.failures)
     }
 
     /// Another session begins. What was told in the one before is void; where the daemon is, how often
@@ -170,6 +184,7 @@ impl Status {
             heard: self.heard,
             listened: self.listened,
             notice: self.notice.take(),
+            failures: std::mem::take(&mut self.failures),
             ..fresh
         };
     }

@@ -156,6 +156,11 @@ impl Viewer {
         &self.source.status
     }
 
+    /// What went wrong since this was asked last: for whoever has no window to read it in.
+    pub fn take_failures(&mut self) -> Vec<String> {
+        self.source.status.take_failures()
+    }
+
     /// Where what comes from the daemon waits: for harnesses without a network.
     pub fn inbox(&self) -> Option<&Inbox> {
         self.source.as_daemon().map(Daemon::inbox)
