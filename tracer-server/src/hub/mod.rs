@@ -365,7 +365,7 @@ impl Lost {
         self.bytes.fetch_add(gap.bytes, Ordering::Relaxed);
     }
 
-    fn take(&self) -> Gap {
+    fn drain(&self) -> Gap {
         Gap {
             batches: self.batches.swap(0, Ordering::Relaxed),
             paths: self.paths.swap(0, Ordering::Relaxed),

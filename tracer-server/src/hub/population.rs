@@ -168,7 +168,7 @@ impl Population {
         } else {
             None
         };
-        self.open.take(path, wanted, weight);
+        self.open.add(path, wanted, weight);
     }
 
     /// Completes the open batch if it has waited long enough, and adapts the decimation.
@@ -292,7 +292,7 @@ impl Open {
     }
 
     /// Counts a path, and puts it in if it has a weight.
-    fn take(&mut self, path: &PathView<'_>, wanted: bool, weight: Option<f32>) {
+    fn add(&mut self, path: &PathView<'_>, wanted: bool, weight: Option<f32>) {
         let steps = f64::from(path.header.weight);
         self.origin.seen += 1;
         self.origin.seen_steps += steps;
