@@ -48,6 +48,10 @@ fn connection(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     let status = world.status;
     let place = place(status);
     match &status.link {
+        LinkState::Idle => {
+            dot(ui, ui.visuals().weak_text_color());
+            ui.add(Label::new("Nothing to look at").selectable(false));
+        }
         LinkState::Connected => {
             let playing = world.playback.is_some();
             if !playing {

@@ -34,7 +34,7 @@ use crate::settings::{CloudSettings, Settings};
 use crate::source::connection::Link;
 use crate::source::playback::Playback;
 use crate::source::selection::Names;
-use crate::source::status::Status;
+use crate::source::status::{LinkState, Status};
 
 /// Where what is looked at comes from.
 #[derive(Debug)]
@@ -65,7 +65,8 @@ pub struct Source {
 impl Source {
     /// Nothing to look at.
     pub fn nothing() -> Self {
-        Self::of(Origin::Nothing, Status::new(String::new(), false))
+        let status = Status { link: LinkState::Idle, ..Status::new(String::new(), false) };
+        Self::of(Origin::Nothing, status)
     }
 
     /// The daemon at `address`, HOST:PORT, which may be embedded in this program; nothing has come.

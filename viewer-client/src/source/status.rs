@@ -14,6 +14,8 @@ use crate::value::trends::Trends;
 /// How the connection is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkState {
+    /// Nothing is looked at.
+    Idle,
     /// There is none.
     Disconnected {
         /// What went wrong last.

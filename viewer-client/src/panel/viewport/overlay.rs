@@ -61,6 +61,10 @@ fn gate(painter: &Painter, rect: Rect, world: &World<'_>) {
 fn nothing_yet(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
     let status = world.status;
     let (title, lines) = match &status.link {
+        LinkState::Idle => {
+            let remedy = "The menu Connection leads to a daemon.".to_owned();
+            ("Nothing to look at".to_owned(), vec![remedy])
+        }
         LinkState::Connecting => {
             (format!("Connecting to {} …", status.address), vec!["One moment.".to_owned()])
         }
