@@ -65,7 +65,8 @@ pub struct Source {
 impl Source {
     /// Nothing to look at.
     pub fn nothing() -> Self {
-        let status = Status { link: LinkState::Idle, ..Status::new(String::new(), false) };
+        let mut status = Status::new(String::new(), false);
+        status.link = LinkState::Idle;
         Self::of(Origin::Nothing, status)
     }
 
