@@ -1,7 +1,7 @@
 //! `connect`, `share`, `screenshot`, `copy`: what goes beyond the window.
 
 use super::table::table;
-use crate::value::{Line, Source};
+use crate::value::{Line, Part};
 
 /// Stands for the address of the daemon inside this program.
 pub const HOME: &str = "home";
@@ -19,6 +19,6 @@ table! {
         /// Writes the whole window as an image.
         Screenshot "screenshot" (file: String [Line::Any("FILE.png")]);
         /// Copies as text what a panel says, the state of the session, or all settings as commands.
-        Copy "copy" (source: Source);
+        Copy "copy" (source: Part);
     }
 }

@@ -7,28 +7,28 @@ use crate::command::Command;
 use crate::imaging::Comparison;
 use crate::source::status::LinkState;
 use crate::value::format;
-use crate::value::{PanelName, Source};
+use crate::value::{PanelName, Part};
 use crate::world::World;
 
 /// The text of a part of the window; blank where it has nothing to say.
-pub fn text(world: &World<'_>, source: Source) -> String {
+pub fn text(world: &World<'_>, source: Part) -> String {
     match source {
-        Source::Status => status(world),
-        Source::Settings => script(world.settings.commands()),
-        Source::Panel(PanelName::Cloud) => script(world.settings.cloud.commands()),
-        Source::Panel(PanelName::Scene) => script(world.settings.scene.commands()),
-        Source::Panel(PanelName::Filter) => filter(world),
-        Source::Panel(PanelName::Image) => image(world),
-        Source::Panel(PanelName::Path) => {
+        Part::Status => status(world),
+        Part::Settings => script(world.settings.commands()),
+        Part::Panel(PanelName::Cloud) => script(world.settings.cloud.commands()),
+        Part::Panel(PanelName::Scene) => script(world.settings.scene.commands()),
+        Part::Panel(PanelName::Filter) => filter(world),
+        Part::Panel(PanelName::Image) => image(world),
+        Part::Panel(PanelName::Path) => {
             world.selection.map_or_else(String::new, |selection| selection.text(&world.names()))
         }
-        Source::Panel(PanelName::Explorer) => explorer(world),
-        Source::Panel(PanelName::Playback) => world.playback.map_or_else(String::new, |playback| {
+        Part::Panel(PanelName::Explorer) => explorer(world),
+        Part::Panel(PanelName::Playback) => world.playback.map_or_else(String::new, |playback| {
             let (step, steps) = playback.place();
             format!("step {step} of {steps}\n")
         }),
-        Source::Panel(PanelName::Statistics) => statistics(world),
-        Source::Panel(PanelName::Diagnostics) => diagnostics(world),
+        Part::Panel(PanelName::Statistics) => statistics(world),
+        Part::Panel(PanelName::Diagnostics) => diagnostics(world),
     }
 }
 
@@ -46,6 +46,7 @@ fn status(world: &World<'_>) -> String {
     let mut text = String::new();
     line!(text, "daemon\t{}", status.address);
     match &status.link {
+        LinkState::Idle => line!(text, "state\tidle"),
         LinkState::Connected => line!(text, "state\tconnected"),
         LinkState::Connecting => line!(text, "state\tconnecting"),
         LinkState::Disconnected { reason, .. } => line!(text, "state\tdisconnected: {reason}"),

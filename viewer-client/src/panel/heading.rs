@@ -12,7 +12,7 @@ use crate::command::{Command, DesktopCommand, LayoutCommand};
 use crate::keys::{bindings, key_name};
 use crate::settings::Layout as Settled;
 use crate::value::theme;
-use crate::value::{Move, PanelName, Source, Switch};
+use crate::value::{Move, PanelName, Part, Switch};
 use crate::world::World;
 
 /// Shows the heading of a section.
@@ -39,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, name: PanelName, world: &World<'_>, commands: &m
         });
     });
     if copy {
-        commands.push(Command::Desktop(DesktopCommand::Copy(Source::Panel(name))));
+        commands.push(Command::Desktop(DesktopCommand::Copy(Part::Panel(name))));
     }
     let line = ui.visuals().widgets.noninteractive.bg_stroke;
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 5.0), Sense::hover());

@@ -43,7 +43,7 @@ pub use notice::NOTICE_TIME;
 use crate::command::{Command, DesktopCommand, LayoutCommand};
 use crate::settings::Layout as Settled;
 use crate::value::WIDTHS;
-use crate::value::{Move, PanelName, Source, Switch, WindowSide};
+use crate::value::{Move, PanelName, Part, Switch, WindowSide};
 use crate::world::World;
 
 /// A part of the window.
@@ -454,6 +454,6 @@ fn copy_by_key(ui: &Ui, response: &Response, name: PanelName, commands: &mut Vec
     let selects = ctx.plugin::<LabelSelectionState>().lock().has_selection();
     if !selects && !ctx.egui_wants_keyboard_input() {
         ui.input_mut(|input| input.events.retain(|event| !is_copy(event)));
-        commands.push(Command::Desktop(DesktopCommand::Copy(Source::Panel(name))));
+        commands.push(Command::Desktop(DesktopCommand::Copy(Part::Panel(name))));
     }
 }

@@ -9,6 +9,7 @@ mod choice;
 mod cloud;
 mod filter;
 pub mod format;
+mod fresh;
 pub mod history;
 mod image;
 mod number;
@@ -36,7 +37,7 @@ pub use path::{Pointer, ShownPath, VertexStep};
 pub use scene::{ClipSide, Handles, Light, Lighting, Shading};
 pub use switch::Switch;
 pub use text::{Line, name};
-pub use window::{KeyPreset, MousePreset, Move, Source, Theme, ThemeChange, WIDTHS, WindowSide};
+pub use window::{KeyPreset, MousePreset, Move, Part, Theme, ThemeChange, WIDTHS, WindowSide};
 pub use words::{CommandError, Words};
 
 use std::fmt::Debug;

@@ -136,7 +136,7 @@ choices! {
 
 /// Something that has a text to be copied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum Part {
     /// The state of the session.
     Status,
     /// Every setting, as commands.
@@ -145,7 +145,7 @@ pub enum Source {
     Panel(PanelName),
 }
 
-impl Value for Source {
+impl Value for Part {
     type Limits = ();
 
     fn form(_: &str, (): &()) -> String {

@@ -10,7 +10,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::tests::{SIZE, picture_of, stage};
 use super::*;
-use crate::source::connection::Delivery;
+use crate::synthetic::Delivery;
 use crate::synthetic::{camera, delivery};
 use crate::value::ColorMode;
 
@@ -51,7 +51,7 @@ fn batch() -> PathBatch {
 }
 
 fn of(batch: PathBatch) -> Delivery {
-    Delivery { batches: [batch].into(), ..delivery(&[&[[0.0; 3]]]) }
+    Delivery { batches: vec![batch], ..delivery(&[&[[0.0; 3]]]) }
 }
 
 /// How much brighter one picture is than another.

@@ -10,7 +10,7 @@ use crate::panel::{copied, heading, image, status, viewport};
 use crate::source::status::LinkState;
 use crate::synthetic::{batch, welcome};
 use crate::value::MousePreset;
-use crate::value::{Move, Source, Switch};
+use crate::value::{Move, Part, Switch};
 
 /// A heading alone.
 #[derive(Debug)]
@@ -38,7 +38,7 @@ fn a_section_is_folded_moved_explained_copied_and_closed_at_its_heading() {
     assert_eq!(click(&["Statistics"]), layout(LayoutCommand::Fold(name, Switch::On)));
     let closed = layout(LayoutCommand::Panel(name, Switch::Off));
     assert_eq!(click(&["×"]), closed, "close");
-    let copied = vec![Command::Desktop(DesktopCommand::Copy(Source::Panel(name)))];
+    let copied = vec![Command::Desktop(DesktopCommand::Copy(Part::Panel(name)))];
     assert_eq!(click(&["…", "Copy as text"]), copied, "copy");
     let left = layout(LayoutCommand::Arrange(name, Move::Left));
     assert_eq!(click(&["…", "Move to the left side"]), left, "move");
@@ -54,10 +54,10 @@ fn the_bar_at_the_foot_tells_who_drives_what() {
     stage.status.statistics(statistics());
     stage.status.latency = Some(std::time::Duration::from_micros(2500));
     let chains = ChainState { running: false, ..ChainState::default() };
-    stage.status.steering.take(Notice::Chains(chains));
+    stage.status.steering.accept(Notice::Chains(chains));
     let author = Author { session: 9, name: "Ada".to_owned() };
     let driver = Attendee { author, role: Role::Driver, ..Attendee::default() };
-    stage.status.steering.take(Notice::Presence(Presence { viewers: vec![driver] }));
+    stage.status.steering.accept(Notice::Presence(Presence { viewers: vec![driver] }));
     let mut harness = stage.harness();
     harness.set_size(vec2(1280.0, 40.0));
     harness.run_steps(3);
@@ -79,19 +79,19 @@ fn every_part_has_a_text_for_the_clipboard() {
     stage.selection = Some(Selection::new(path.header, path.vertices.to_vec()));
     let text = |source| copied::text(&stage.world(), source);
     for (source, expected) in [
-        (Source::Status, "daemon\t127.0.0.1:50061"),
-        (Source::Panel(PanelName::Statistics), "bidirectional\t2000\t1500\t250\t0.45"),
-        (Source::Panel(PanelName::Filter), "edges >= 3"),
-        (Source::Panel(PanelName::Path), "x1 D"),
-        (Source::Panel(PanelName::Diagnostics), "R-hat of the worst tile\t1.37"),
-        (Source::Panel(PanelName::Image), "exposure"),
-        (Source::Panel(PanelName::Explorer), "accepted"),
+        (Part::Status, "daemon\t127.0.0.1:50061"),
+        (Part::Panel(PanelName::Statistics), "bidirectional\t2000\t1500\t250\t0.45"),
+        (Part::Panel(PanelName::Filter), "edges >= 3"),
+        (Part::Panel(PanelName::Path), "x1 D"),
+        (Part::Panel(PanelName::Diagnostics), "R-hat of the worst tile\t1.37"),
+        (Part::Panel(PanelName::Image), "exposure"),
+        (Part::Panel(PanelName::Explorer), "accepted"),
     ] {
         let text = text(source);
         assert!(text.contains(expected), "{source:?}: `{expected}` is missing in\n{text}");
     }
     for source in [PanelName::Cloud, PanelName::Scene] {
-        let script = text(Source::Panel(source));
+        let script = text(Part::Panel(source));
         assert!(script.lines().count() > 5, "{script}");
         for line in script.lines() {
             assert!(line.parse::<Command>().is_ok(), "`{line}` is no command");
