@@ -9,7 +9,7 @@ use tracer_server::daemon::{Daemon, DaemonOptions};
 use tracer_server::scene::Scene;
 use tracer_server::scene::load::load;
 use viewer_client::app::Viewer;
-use viewer_client::command::Command;
+use viewer_client::command::{Command, SessionCommand};
 use viewer_client::source::Source;
 use viewer_client::source::connection::{Link, Peer};
 use viewer_client::source::status::LinkState;
@@ -66,7 +66,7 @@ fn a_viewer_survives_its_daemon() {
 
     let second = daemon(address);
     let before = viewer.paths_received();
-    viewer.apply(Command::Reconnect);
+    viewer.apply(Command::Session(SessionCommand::Reconnect));
     until("the connection is back", &mut viewer, |v| v.status().is_connected());
     until("paths flow again", &mut viewer, |v| v.paths_received() > before + 100);
     assert_eq!(viewer.status().reconnects, 1, "it was made anew");
@@ -89,6 +89,6 @@ fn a_viewer_without_a_daemon_says_why_and_goes_on_trying() {
     };
     until("the first attempt fails", &mut viewer, |v| failure(v).is_some());
     let first = failure(&viewer);
-    viewer.apply(Command::Reconnect);
+    viewer.apply(Command::Session(SessionCommand::Reconnect));
     until("a later attempt fails, too", &mut viewer, |v| failure(v) > first);
 }

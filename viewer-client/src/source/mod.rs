@@ -35,7 +35,7 @@ use crate::source::connection::Link;
 use crate::source::playback::Playback;
 use crate::source::selection::Names;
 use crate::source::status::{LinkState, Status};
-use crate::value::ColorMode;
+use crate::value::{ColorMode, Exposure};
 
 /// Where what is looked at comes from.
 #[derive(Debug)]
@@ -121,8 +121,8 @@ impl Source {
     /// not come cannot be shown.
     pub fn suited(&self, settings: &Settings) -> Settings {
         let mut seen = settings.clone();
-        if !seen.image.chosen {
-            seen.image.exposure = 0.0;
+        if !seen.image.exposure.is_chosen() {
+            seen.image.exposure = Exposure::Auto(0.0);
         }
         if let Some(statistics) = &self.status.statistics {
             seen.image.suit(statistics.normalization);

@@ -30,6 +30,7 @@ pub use camera::{Side, Viewpoint};
 pub use choice::Choice;
 pub use cloud::{Blend, ColorMode, ColorScale, Marks};
 pub use filter::{MOST_SELECTORS, Sphere, kind_name};
+pub use fresh::fresh;
 pub use image::{Channel, Exposure, Layer, ToneCurve};
 pub use number::{Axes, Number, Range, axes, range};
 pub use panel::PanelName;

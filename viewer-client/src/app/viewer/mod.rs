@@ -242,7 +242,7 @@ impl Viewer {
             Command::Play(command) => self.play(command),
             Command::Scrub(number) => self.source.status.steering.focus.scrub = number,
             // What these change is not what they can undo.
-            Command::Session(SessionCommand::Undo) | Command::Session(SessionCommand::Redo) => {}
+            Command::Session(SessionCommand::Undo | SessionCommand::Redo) => {}
             Command::Session(SessionCommand::Reconnect) => {
                 self.source.as_daemon().into_iter().for_each(Daemon::retry_now);
             }

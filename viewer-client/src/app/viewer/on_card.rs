@@ -5,7 +5,7 @@ use egui_wgpu::RenderState;
 use glam::Vec3;
 
 use crate::draw::gpu::{Renderer, Uploaded};
-use crate::settings::{DrawingAids, Settings};
+use crate::settings::{SceneSettings, Settings};
 use crate::source::Shown;
 use crate::source::model::{corners, drawing_aids};
 use crate::source::store::{PAGE_POINTS, Store};
@@ -31,7 +31,7 @@ struct Aids {
     /// Without it where the user looks through it: it would stand before the user's eyes.
     camera: Option<Camera>,
     up: Vec3,
-    wanted: DrawingAids,
+    wanted: SceneSettings,
 }
 
 impl OnCard {
@@ -69,13 +69,13 @@ impl Aids {
             bounds: shown.model.as_ref().map(|model| model.bounds),
             camera: camera.copied(),
             up: shown.camera.up(),
-            wanted: settings.scene.aids,
+            wanted: settings.scene.clone(),
         }
     }
 
     fn points(&self) -> Vec<shaders::LinePoint> {
         let Some(bounds) = self.bounds else { return Vec::new() };
-        drawing_aids(bounds, self.camera.as_ref(), self.up, self.wanted)
+        drawing_aids(bounds, self.camera.as_ref(), self.up, &self.wanted)
     }
 }
 

@@ -31,7 +31,7 @@ pub(super) fn paint(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color
         column.entry("end, at the camera", theme::CAMERA_END);
         column.entry("start, on the light", theme::LIGHT_END);
     }
-    let ramp = theme::ramp(world.settings.layout.dark);
+    let ramp = theme::ramp(world.settings.window.is_dark());
     let scale = cloud.scale;
     match cloud.color {
         ColorMode::Radiance | ColorMode::Constant => {}

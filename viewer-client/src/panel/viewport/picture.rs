@@ -45,7 +45,7 @@ fn uniforms(world: &World<'_>, size: [u32; 2], pixels_per_point: f32) -> FrameUn
     let [width, height] = size.map(|side| side as f32);
     let lens = world.camera.lens(width / height);
     let cloud = &world.settings.cloud;
-    let dark = world.settings.layout.dark;
+    let dark = world.settings.window.is_dark();
     let (darkest, brightest) = world.store.tone().range();
     let [start_radius, dot_radius] = dots(cloud).map(|points| points * pixels_per_point);
     let [opacity, edges] = surfaces(&world.settings.scene);
