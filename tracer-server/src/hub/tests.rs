@@ -173,7 +173,7 @@ fn without_a_pump_producers_lose_but_never_wait() {
         hub.publish_paths(batch(10));
         hub.publish_film(film(1, 1, 0.0));
     }
-    let lost = hub.shared.lost.take();
+    let lost = hub.shared.lost.drain();
     assert_eq!(lost.batches, 10_000 - INGRESS_BATCHES as u64);
     let waiting = hub.shared.waiting_bytes.load(Ordering::Relaxed);
     assert_eq!(waiting, INGRESS_BATCHES * batch(10).byte_len(), "what waits is counted");
