@@ -8,8 +8,8 @@ use std::io::{self, Write as _};
 use std::time::Instant;
 
 use common::{
-    BatchBuilder, BatchLimits, ChainId, CompiledFilter, Event, Filter, FilterScene, PathBatch,
-    PathHeader, PathId, SceneFrame, VertexKind, VertexRecord,
+    BatchBuilder, BatchLimits, ChainId, CompiledFilter, Event, Filter, FilterMaterial, FilterScene,
+    PathBatch, PathHeader, PathId, SceneFrame, VertexKind, VertexRecord,
 };
 use glam::DVec3;
 
@@ -32,10 +32,10 @@ const FILTERS: [&str; 8] = [
 
 fn main() -> io::Result<()> {
     let batch = paths();
+    let material = |name: &str| FilterMaterial { name: name.to_owned(), ..Default::default() };
     let scene = FilterScene {
         frame: SceneFrame { centre: DVec3::ZERO, scale: 1.0, light: 1.0 },
-        materials: ["wall", "glass", "lamp"].map(str::to_owned).to_vec(),
-        background: None,
+        materials: ["wall", "glass", "lamp"].map(material).to_vec(),
         strategies: Vec::new(),
         objects: Vec::new(),
     };
