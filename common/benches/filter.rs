@@ -32,10 +32,9 @@ const FILTERS: [&str; 8] = [
 
 fn main() -> io::Result<()> {
     let batch = paths();
-    let material = |name: &str| FilterMaterial { name: name.to_owned(), ..Default::default() };
     let scene = FilterScene {
         frame: SceneFrame { centre: DVec3::ZERO, scale: 1.0, light: 1.0 },
-        materials: ["wall", "glass", "lamp"].map(material).to_vec(),
+        materials: ["wall", "glass", "lamp"].map(FilterMaterial::from).to_vec(),
         strategies: Vec::new(),
         objects: Vec::new(),
     };

@@ -1,7 +1,7 @@
 //! The part of the image whose paths are wanted: one condition of the filter, found and replaced
 //! without touching the others.
 
-use common::{Filter, Leaf};
+use common::{FilmCondition, Filter, Leaf};
 
 /// Left, top, right and bottom on the film, from 0 to 1.
 pub type Region = [f64; 4];
@@ -10,7 +10,9 @@ pub type Region = [f64; 4];
 pub fn region_of(text: &str) -> Option<Region> {
     fn rectangle(filter: &Filter) -> Option<Region> {
         match filter {
-            Filter::Leaf(Leaf::Film { min: [u0, v0], max: [u1, v1] }) => Some([*u0, *v0, *u1, *v1]),
+            Filter::Leaf(Leaf::Film(FilmCondition { min: [u0, v0], max: [u1, v1] })) => {
+                Some([*u0, *v0, *u1, *v1])
+            }
             Filter::And(parts) => parts.iter().find_map(rectangle),
             _ => None,
         }
@@ -22,7 +24,8 @@ pub fn region_of(text: &str) -> Option<Region> {
 pub fn with_region(text: &str, region: Option<Region>) -> String {
     let rest = Filter::parse(text).ok().and_then(without_region);
     let [u0, v0, u1, v1] = region.unwrap_or_default();
-    let leaf = region.map(|_| Filter::Leaf(Leaf::Film { min: [u0, v0], max: [u1, v1] }));
+    let leaf =
+        region.map(|_| Filter::Leaf(Leaf::Film(FilmCondition { min: [u0, v0], max: [u1, v1] })));
     match (rest, leaf) {
         (None, None) => String::new(),
         (Some(filter), None) | (None, Some(filter)) => filter.to_string(),
@@ -37,7 +40,7 @@ pub fn with_region(text: &str, region: Option<Region>) -> String {
 /// What is left of a filter without its rectangle; `None` where that is every path.
 fn without_region(filter: Filter) -> Option<Filter> {
     match filter {
-        Filter::Constant(true) | Filter::Leaf(Leaf::Film { .. }) => None,
+        Filter::Constant(true) | Filter::Leaf(Leaf::Film(_)) => None,
         Filter::And(parts) => {
             let mut rest: Vec<_> = parts.into_iter().filter_map(without_region).collect();
             match rest.len() {

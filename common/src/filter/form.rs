@@ -219,14 +219,14 @@ pub struct Proposal<T> {
     pub label: String,
     /// What it means.
     pub meaning: &'static str,
-    /// What is made.
-    pub made: T,
+    /// What is made; nothing where the line only tells that there is nothing to choose.
+    pub made: Option<T>,
 }
 
 impl<T> Proposal<T> {
     /// The same line, which makes something else of it.
     pub(super) fn map<U>(self, make: impl FnOnce(T) -> U) -> Proposal<U> {
         let Self { menu, label, meaning, made } = self;
-        Proposal { menu, label, meaning, made: make(made) }
+        Proposal { menu, label, meaning, made: made.map(make) }
     }
 }

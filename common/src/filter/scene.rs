@@ -54,6 +54,13 @@ impl From<&MaterialInfo> for FilterMaterial {
     }
 }
 
+impl From<&str> for FilterMaterial {
+    /// A material that is no light.
+    fn from(name: &str) -> Self {
+        Self { name: name.to_owned(), ..Self::default() }
+    }
+}
+
 impl FilterScene {
     /// What filters on the paths of a scene may ask for.
     pub fn new(frame: SceneFrame, mesh: &SceneMesh, strategies: Vec<String>) -> Self {

@@ -128,7 +128,7 @@ impl Volume {
     }
 
     /// The region, larger by `by` on every side, and what that is called.
-    pub(super) fn widened(&self, by: f64) -> (&'static str, Self) {
+    pub fn widened(&self, by: f64) -> (&'static str, Self) {
         match *self {
             Self::Sphere { centre, radius } => {
                 ("Widen the sphere", Self::Sphere { centre, radius: (radius + by) * MARGIN })

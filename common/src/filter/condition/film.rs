@@ -60,7 +60,7 @@ impl Condition for FilmCondition {
             menu: None,
             label: "Part of the film".to_owned(),
             meaning: "Where on the film the path arrives",
-            made: Self::default(),
+            made: Some(Self::default()),
         }]
     }
 

@@ -31,7 +31,7 @@ impl Condition for LightPathCondition {
             menu: None,
             label: "Light path expression".to_owned(),
             meaning: "The events along the path, such as `CDS+L`",
-            made: Self::default(),
+            made: Some(Self::default()),
         }]
     }
 

@@ -125,7 +125,7 @@ impl Condition for NumberCondition {
             menu: Some("Number"),
             label: attribute.word().text.to_owned(),
             meaning: attribute.word().meaning,
-            made: Self::from(attribute),
+            made: Some(Self::from(attribute)),
         };
         Attribute::all().map(proposal).collect()
     }

@@ -39,7 +39,7 @@ impl Condition for SegmentCondition {
             menu: None,
             label: "Segment through a box".to_owned(),
             meaning: "A segment passes through it",
-            made: Self { place: Place::Any, volume: Volume::cube(spot) },
+            made: Some(Self { place: Place::Any, volume: Volume::cube(spot) }),
         }]
     }
 

@@ -62,7 +62,7 @@ impl Condition for StrategyCondition {
             menu: Some("Strategy"),
             label: String::from(name),
             meaning: "It made the path",
-            made: Self { among: Among::Is, names: vec![Name::from(name)] },
+            made: Some(Self { among: Among::Is, names: vec![Name::from(name)] }),
         };
         scene.names(NameList::Strategies).into_iter().map(proposal).collect()
     }

@@ -113,7 +113,7 @@ impl VertexCheck {
             menu: None,
             label: label.to_owned(),
             meaning: "A vertex lies in it",
-            made: Self::Inside(volume),
+            made: Some(Self::Inside(volume)),
         };
         let named = |on: On| {
             let menu = match on {
@@ -121,19 +121,22 @@ impl VertexCheck {
                 On::Material => "Material",
                 On::Light => "Light",
             };
-            let proposal = move |name: &str| Proposal {
+            let line = move |label: &str, made| Proposal {
                 menu: Some(menu),
-                label: name.to_owned(),
+                label: label.to_owned(),
                 meaning: on.word().meaning,
-                made: Self::On(on, Name::from(name)),
+                made,
             };
-            scene.names(on.into()).into_iter().map(proposal)
+            let names = scene.names(on.into());
+            let empty = names.is_empty().then(|| line("The scene has none with a name", None));
+            let named = move |name: &str| line(name, Some(Self::On(on, Name::from(name))));
+            names.into_iter().map(named).chain(empty)
         };
         let class = |class: VertexClass| Proposal {
             menu: Some("Scattering"),
             label: class.word().text.to_owned(),
             meaning: class.word().meaning,
-            made: Self::Is(class),
+            made: Some(Self::Is(class)),
         };
         [region("Sphere", Volume::ball(spot)), region("Box", Volume::cube(spot))]
             .into_iter()

@@ -76,8 +76,7 @@ fn a_choice_takes_the_place_of_what_is_there() {
 fn odd_names_are_offered_as_they_are_written() {
     let mut scene = scene();
     let names = ["Material #25", "a;b 100%", "O'Brien \"glass\"", "стекло", "back\\slash"];
-    scene.materials =
-        names.map(|name| FilterMaterial { name: name.to_owned(), ..Default::default() }).to_vec();
+    scene.materials = names.map(FilterMaterial::from).to_vec();
     for name in names {
         for (before, after) in [("any on material ", ""), ("lpe \"C.*'", ".*L\"")] {
             let text: String = before.chars().chain(name.chars().take(1)).collect();

@@ -1,11 +1,10 @@
 //! Which paths are shown: presets, the text, its tree, spheres, kept filters, and what was found.
 
-pub(super) mod complete;
 pub(crate) mod found;
 mod kept;
 mod text;
 
-use common::SelectorKind;
+use common::{Filter, Leaf, SelectorKind};
 use egui::{Button, DragValue, Label, RichText, Ui};
 
 use super::widgets::{dot, toggle};
@@ -14,7 +13,7 @@ use crate::command::{Command, FilterCommand, kind_name};
 use crate::theme;
 use crate::world::World;
 
-pub(super) use text::vocabulary;
+pub(super) use text::filter_scene;
 
 /// Light path expressions that people ask for most.
 const PRESETS: [(&str, &str, &str); 5] = [
@@ -37,10 +36,10 @@ impl Panel for FilterPanel {
         let mut filter = |command| commands.push(Command::Filter(command));
         presets(ui, world, &mut filter);
         self.draft.ui(ui, world, &mut filter);
-        if is_likely_mistaken(&world.settings.filter.text) {
-            let text = "`RD` is two vertices, a reflection and then something diffuse; `<RD>` is \
-                        one vertex that is both.";
-            ui.add(Label::new(RichText::new(text).small().weak()).wrap());
+        if let Ok(filter) = Filter::parse(&world.settings.filter.text)
+            && let Some(remark) = filter.leaves().into_iter().find_map(Leaf::remark)
+        {
+            ui.add(Label::new(RichText::new(remark).small().weak()).wrap());
         }
         builder::ui(ui, world, &mut filter);
         selectors(ui, world, &mut filter);
@@ -62,28 +61,6 @@ fn presets(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterCommand
             }
         }
     });
-}
-
-/// True where an expression asks for a way of going on and a kind of scattering as two vertices, which
-/// people write who mean one.
-fn is_likely_mistaken(text: &str) -> bool {
-    let expressions = text.split('"').skip(1).step_by(2);
-    expressions.into_iter().any(|expression| {
-        let (mut bracketed, mut quoted) = (false, false);
-        let mut before = ' ';
-        expression.chars().any(|c| {
-            let mistaken = matches!(before, 'R' | 'T' | 'V') && matches!(c, 'D' | 'G' | 'S' | 's');
-            let counts = !bracketed && !quoted;
-            match c {
-                '\'' => quoted = !quoted,
-                '<' | '[' => bracketed = true,
-                '>' | ']' => bracketed = false,
-                _ => {}
-            }
-            before = c;
-            counts && mistaken
-        })
-    })
 }
 
 fn switches(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterCommand)) {

@@ -3,14 +3,14 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use common::{Filter, FilterError, Named, Rgb};
+use common::{Completion, Filter, FilterError, FilterScene, SceneFrame, SceneMesh, complete};
 use egui::text::{CCursor, CCursorRange, LayoutJob, TextFormat};
 use egui::{
     Button, EventFilter, FontId, Galley, Id, Key, Modifiers, Popup, PopupCloseBehavior, RectAlign,
     RichText, Stroke, TextBuffer, TextEdit, Ui,
 };
+use glam::DVec3;
 
-use super::complete::{self, Completion, Vocabulary};
 use crate::command::FilterCommand;
 use crate::theme;
 use crate::world::World;
@@ -106,7 +106,7 @@ impl Draft {
             return None;
         }
         let byte = byte_of(&self.text, cursor.primary.index.0);
-        let found = complete::complete(&self.text, byte, &vocabulary(world));
+        let found = complete(&self.text, byte, &filter_scene(world));
         (!found.choices.is_empty()).then_some(found)
     }
 
@@ -125,17 +125,9 @@ impl Draft {
 
     /// Writes a choice into the text, and puts the cursor behind it.
     fn take(&mut self, ui: &Ui, id: Id, completion: &Completion, line: usize) {
-        let Some(choice) = completion.choices.get(line) else { return };
-        let Range { start, end } = completion.range;
-        let (Some(before), Some(after)) = (self.text.get(..start), self.text.get(end..)) else {
-            return;
-        };
-        let word = choice.text.ends_with(|c: char| c.is_alphanumeric() || c == '"' || c == '=');
-        let in_quotes = before.matches('"').count() % 2 == 1 && !choice.text.starts_with('"');
-        let blank = if word && !in_quotes && !after.starts_with(' ') { " " } else { "" };
-        let written = format!("{before}{}{blank}", choice.text);
-        let cursor = written.chars().count();
-        self.text = format!("{written}{after}");
+        let Some((text, cursor)) = completion.taken(&self.text, line) else { return };
+        let cursor = text[..cursor].chars().count();
+        self.text = text;
         self.line = 0;
         let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
         state.cursor.set_char_range(Some(CCursorRange::one(CCursor::new(cursor))));
@@ -162,7 +154,7 @@ impl Draft {
                 ui.spacing_mut().item_spacing.y = 1.0;
                 for (number, choice) in completion.choices.iter().take(MOST).enumerate() {
                     let meaning = RichText::new(choice.meaning).small().weak();
-                    let text = RichText::new(&choice.text).monospace();
+                    let text = RichText::new(choice.text.trim_end()).monospace();
                     let button = Button::selectable(number == self.line, text).right_text(meaning);
                     // The text keeps the focus.
                     if ui.add(button).is_pointer_button_down_on() {
@@ -233,33 +225,10 @@ fn byte_of(text: &str, character: usize) -> usize {
     text.char_indices().nth(character).map_or(text.len(), |(byte, _)| byte)
 }
 
-/// The names that the scene has, as far as they have come.
-pub(in crate::panel) fn vocabulary(world: &World<'_>) -> Vocabulary {
+/// What filters may ask for of the scene, as far as it has come.
+pub(in crate::panel) fn filter_scene(world: &World<'_>) -> FilterScene {
     let names = world.names();
-    let Some(mesh) = names.mesh else {
-        return Vocabulary { strategies: names.strategies.to_vec(), ..Vocabulary::default() };
-    };
-    let mut objects: Vec<String> = mesh.objects.iter().map(|o| o.name.clone()).collect();
-    objects.sort_unstable();
-    objects.dedup();
-    objects.retain(|name| !name.is_empty());
-    let materials = mesh.materials.iter();
-    let lights = materials.clone().filter(|m| m.emission != Rgb::BLACK);
-    Vocabulary {
-        objects,
-        materials: materials.map(|m| m.name.clone()).collect(),
-        lights: lights.map(|m| m.name.clone()).collect(),
-        strategies: names.strategies.to_vec(),
-    }
-}
-
-impl Vocabulary {
-    /// The names of a kind.
-    pub(in crate::panel) fn named(&self, kind: Named) -> &[String] {
-        match kind {
-            Named::Object => &self.objects,
-            Named::Material => &self.materials,
-            Named::Light => &self.lights,
-        }
-    }
+    let frame = names.frame.unwrap_or(SceneFrame { centre: DVec3::ZERO, scale: 1.0, light: 1.0 });
+    let none = SceneMesh::default();
+    FilterScene::new(frame, names.mesh.unwrap_or(&none), names.strategies.to_vec())
 }
