@@ -10,7 +10,7 @@ use egui::{ComboBox, DragValue, RichText, TextEdit, Ui};
 
 use super::{Context, add, fixed, joined_tests};
 use crate::panel::widgets::capitalised;
-use crate::theme;
+use crate::value::theme;
 
 /// Shows a condition or a part of it; true when it was changed. A change that makes no sense is not
 /// made.

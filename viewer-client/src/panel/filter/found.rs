@@ -4,11 +4,11 @@ use common::{ExplorerCommand, Filter, FilterCounts, NearestMiss, Order, Seed, Sh
 use egui::{FontFamily, Label, RichText, Ui};
 
 use crate::command::{Command, FilterCommand, Switch};
-use crate::format;
 use crate::panel::widgets::row;
 use crate::settings::FilterSettings;
-use crate::theme;
-use crate::tree::Source;
+use crate::settings::tree::Source;
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// Shows counts and, where nothing matches, why and what to do.

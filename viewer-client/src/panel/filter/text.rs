@@ -12,7 +12,7 @@ use egui::{
 use glam::DVec3;
 
 use crate::command::FilterCommand;
-use crate::theme;
+use crate::value::theme;
 use crate::world::World;
 
 /// Choices that are shown at most; typing finds the others.
