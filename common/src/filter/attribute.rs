@@ -1,6 +1,6 @@
 //! Numbers that a path can be asked for. To add one: its word and an arm in each `match` below.
 
-use crate::filter::condition::Comparison;
+use crate::filter::condition::number::Comparison;
 use crate::filter::form::words;
 use crate::filter::volume::point;
 use crate::{Event, PathHeader, SceneFrame, VertexKind, VertexRecord};

@@ -10,7 +10,7 @@
 mod attribute;
 mod compile;
 mod complete;
-mod condition;
+pub mod condition;
 mod error;
 mod form;
 mod lpe;
@@ -29,10 +29,9 @@ mod volume;
 pub use attribute::Attribute;
 pub use compile::{CompiledFilter, MAX_LEAVES};
 pub use complete::{Choice, Completion, complete};
-pub use condition::{
-    Among, Comparison, FilmCondition, Leaf, LightPathCondition, NumberCondition, On, Relation,
-    SegmentCondition, StrategyCondition, VertexCheck, VertexClass, VertexCondition, VertexTest,
-};
+pub use condition::Leaf;
+pub use condition::film::FilmCondition;
+pub use condition::vertex::{VertexCheck, VertexTest};
 pub use error::FilterError;
 pub use form::{
     Described, Form, NameList, NumberPart, Proposal, Spot, Stop, Unit, Walk, Word, Worded,

@@ -1,6 +1,8 @@
 //! Selectors as a viewer shows them: regions of four kinds.
 
-use super::{Filter, Leaf, Place, SegmentCondition, Tree, VertexCheck, VertexCondition, Volume};
+use super::condition::segment::SegmentCondition;
+use super::condition::vertex::{VertexCheck, VertexCondition};
+use super::{Filter, Leaf, Place, Tree, Volume};
 
 /// How selectors of a kind combine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

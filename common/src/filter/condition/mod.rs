@@ -1,15 +1,16 @@
 //! Conditions: what a filter may ask of one path.
 //!
-//! To add one: write its file with an `impl Condition`, declare the module, and add a line to the
-//! list in `conditions!` below: parser, printer, completion, complaints, the rows and menus of
-//! viewers and the laws that tests hold follow from it. `docs/EXTEND.md` walks through it.
+//! To add one: write its file with an `impl Condition`, declare the module, add a line to the list in
+//! `conditions!` below and an example of its text to `docs/FILTERS.md`. Parser, printer, completion,
+//! complaints, the rows and menus of viewers and the laws that tests hold follow from it.
+//! `docs/EXTEND.md` walks through it.
 
-mod film;
-mod light_path;
-mod number;
-mod segment;
-mod strategy;
-mod vertex;
+pub mod film;
+pub mod light_path;
+pub mod number;
+pub mod segment;
+pub mod strategy;
+pub mod vertex;
 
 use std::fmt::{self, Debug, Display, Formatter};
 
@@ -18,13 +19,6 @@ use super::parse::Leaves;
 use super::print::text_of;
 use super::{FilterError, FilterScene};
 use crate::{PathHeader, VertexRecord};
-
-pub use film::FilmCondition;
-pub use light_path::LightPathCondition;
-pub use number::{Comparison, NumberCondition, Relation};
-pub use segment::SegmentCondition;
-pub use strategy::{Among, StrategyCondition};
-pub use vertex::{On, VertexCheck, VertexClass, VertexCondition, VertexTest};
 
 /// One kind of condition. Its description is all that a parser, a printer, a user's hand on it and a
 /// random test need.
@@ -168,17 +162,17 @@ macro_rules! conditions {
 
 conditions! {
     /// Something holds at vertices.
-    Vertices(VertexCondition),
+    Vertices(vertex::VertexCondition),
     /// Segments pass through a region.
-    Segments(SegmentCondition),
+    Segments(segment::SegmentCondition),
     /// The sequence of events fits an expression.
-    LightPath(LightPathCondition),
+    LightPath(light_path::LightPathCondition),
     /// The film point lies in a rectangle.
-    Film(FilmCondition),
+    Film(film::FilmCondition),
     /// A number lies in a range.
-    Number(NumberCondition),
+    Number(number::NumberCondition),
     /// One of these strategies made the path.
-    Strategy(StrategyCondition),
+    Strategy(strategy::StrategyCondition),
 }
 
 impl Display for Leaf {

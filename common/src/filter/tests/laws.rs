@@ -5,6 +5,9 @@ use std::mem::discriminant;
 use proptest::prelude::*;
 
 use super::super::complete::{Offer, Offers, Rank, offers};
+use super::super::condition::number::Comparison;
+use super::super::condition::strategy::Among;
+use super::super::condition::vertex::{On, VertexClass};
 use super::super::parse::Leaves as _;
 use super::random::filter;
 use super::*;
