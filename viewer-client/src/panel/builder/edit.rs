@@ -161,7 +161,7 @@ impl Editor<'_> {
     /// A list of choices.
     fn list(&mut self, text: &str, tip: &str, lines: impl FnOnce(&mut Ui)) {
         self.parts += 1;
-        let list = ComboBox::from_id_salt(("part", self.parts)).width(0.0).selected_text(text);
+        let list = ComboBox::from_id_salt((tip, self.parts)).width(0.0).selected_text(text);
         list.show_ui(self.ui, lines).response.on_hover_text(tip);
     }
 }

@@ -138,7 +138,7 @@ fn words_and_names_are_completed_by_tab() {
     press(&mut harness, Key::ArrowDown);
     press(&mut harness, Key::Tab);
     assert_eq!(press(&mut harness, Key::Escape), [], "what is offered next is sent away");
-    let set = FilterCommand::Set("any on material \"lamp\"".to_owned());
+    let set = FilterCommand::Set("any on material \"wall\"".to_owned());
     // It is asked for in every frame until it is done.
     let said = press(&mut harness, Key::Enter);
     assert_eq!(said.first(), Some(&Command::Filter(set)), "Enter sets it");
@@ -152,8 +152,6 @@ fn a_mistake_is_told_with_its_place_and_changes_nothing() {
     assert!(shows(&harness, "Character 23"), "where");
     assert!(shows(&harness, "found `spere`"), "what");
     assert_eq!(press(&mut harness, Key::Enter), [], "no filter");
-    press(&mut harness, Key::Escape);
-    assert!(shows(&harness, "Character"), "first what is offered goes");
     press(&mut harness, Key::Escape);
     assert!(!shows(&harness, "Character"), "taken back");
 }
