@@ -1,8 +1,7 @@
 //! The filter applied to the paths that the viewer holds.
 
 use common::{
-    CompiledFilter, Filter, FilterScene, FilterTally, PathHeader, SceneFrame, SceneMesh,
-    VertexRecord,
+    CompiledFilter, FilterScene, FilterTally, PathHeader, SceneFrame, SceneMesh, VertexRecord,
 };
 
 use super::Viewer;
@@ -44,9 +43,7 @@ impl Viewer {
             mesh.unwrap_or(&none),
             welcome.map(|w| w.strategies.clone()).unwrap_or_default(),
         );
-        let text = self.settings.filter.wanted();
-        let text = if text.is_empty() { "true" } else { text.as_str() };
-        Filter::parse(text).ok()?.compile(&scene).ok()
+        self.settings.filter.whole().tree().ok()?.compile(&scene).ok()
     }
 }
 

@@ -3,7 +3,7 @@
 mod add;
 mod edit;
 
-use common::{Filter, FilterScene, Spot, VertexTest};
+use common::{Filter, FilterScene, FilterText, Spot, VertexTest};
 use egui::{Align, Button, ComboBox, Label, Layout, RichText, Ui, vec2};
 
 use super::filter::filter_scene;
@@ -55,7 +55,8 @@ impl Edit {
 
 /// Shows the tree of the text; changes make a new text.
 pub(super) fn ui(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(FilterCommand)) {
-    let Ok(mut filter) = Filter::parse(&world.settings.filter.text) else { return };
+    let Ok(filter) = world.settings.filter.text().tree() else { return };
+    let mut filter = filter.clone();
     let context = Context::of(world);
     let edit = if filter == Filter::Constant(true) {
         Edit::Nothing
@@ -64,7 +65,7 @@ pub(super) fn ui(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(FilterCom
         node(ui, &mut filter, &context, 0)
     };
     if edit == Edit::Removed {
-        push(FilterCommand::text(String::new()));
+        push(FilterCommand::Set(FilterText::default()));
         return;
     }
     let mut changed = edit == Edit::Changed;
@@ -82,7 +83,7 @@ pub(super) fn ui(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(FilterCom
         }
     });
     if changed {
-        push(FilterCommand::text(filter.to_string()));
+        push(FilterCommand::Set(FilterText::from(&filter)));
     }
 }
 

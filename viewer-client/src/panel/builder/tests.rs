@@ -26,7 +26,7 @@ fn builder(text: &str) -> Harness<'static, Stage> {
     let mut stage = Stage::new(Alone);
     stage.status.welcome(welcome());
     stage.model = Model::new(mesh());
-    stage.settings.filter.text = text.to_owned();
+    stage.settings.filter.apply(&FilterCommand::Set(FilterText::read(text)));
     let mut harness = stage.harness();
     harness.run_steps(3);
     harness
@@ -41,7 +41,7 @@ fn text(harness: &mut Harness<'_, Stage>) -> String {
         }
     }
     harness.run_steps(3);
-    harness.state().settings.filter.text.clone()
+    harness.state().settings.filter.text().to_string()
 }
 
 fn click(harness: &mut Harness<'_, Stage>, label: &str) -> String {

@@ -1,12 +1,13 @@
 //! What the daemon found, and what is the matter where that is nothing.
 
-use common::{ExplorerCommand, Filter, FilterCounts, NearestMiss, Order, Seed, Shortfall, Volume};
+use common::{
+    ExplorerCommand, Filter, FilterCounts, FilterText, NearestMiss, Order, Seed, Shortfall, Volume,
+};
 use egui::{FontFamily, Label, RichText, Ui};
 
 use crate::command::{Command, FilterCommand, Switch};
 use crate::panel::widgets::row;
-use crate::settings::FilterSettings;
-use crate::settings::tree::Source;
+use crate::settings::{FilterSettings, FilterSource};
 use crate::value::format;
 use crate::value::theme;
 use crate::world::World;
@@ -70,7 +71,7 @@ fn nothing_found(
         nearest(ui, world, (miss, conditions), commands);
     }
     ui.horizontal_wrapped(|ui| {
-        if !world.settings.filter.inverted
+        if !world.settings.filter.is_inverted()
             && ui.button("Invert").on_hover_text("Show the paths that are left out").clicked()
         {
             commands.push(Command::Filter(FilterCommand::Invert(Switch::On)));
@@ -129,7 +130,7 @@ fn explained(miss: &NearestMiss, conditions: &[String], settings: &FilterSetting
     for (i, failed) in miss.failed.iter().enumerate() {
         let number = failed.condition as usize;
         let what = match settings.source(number) {
-            Some(Source::Sphere(number)) => format!("sphere {}", number + 1),
+            Some(FilterSource::Sphere(number)) => format!("sphere {}", number + 1),
             _ => conditions.get(number).map_or_else(String::new, |text| format!("`{text}`")),
         };
         text.push_str(if i > 0 { ", and " } else { " " });
@@ -147,9 +148,9 @@ type Remedy = (String, &'static str, FilterCommand);
 fn remedies(settings: &FilterSettings, failed: &Shortfall) -> Vec<Remedy> {
     let drop = "Ask for this no longer";
     match settings.source(failed.condition as usize) {
-        Some(Source::Sphere(number)) => {
+        Some(FilterSource::Sphere(number)) => {
             let name = format!("sphere {}", number + 1);
-            let wider = failed.by.zip(settings.selectors.get(number)).and_then(|(by, sphere)| {
+            let wider = failed.by.zip(settings.selectors().get(number)).and_then(|(by, sphere)| {
                 let (_, Volume::Sphere { centre, radius }) = sphere.selector().volume.widened(by)
                 else {
                     return None;
@@ -161,21 +162,22 @@ fn remedies(settings: &FilterSettings, failed: &Shortfall) -> Vec<Remedy> {
             let delete = (format!("Delete {name}"), drop, FilterCommand::Delete(number as u32));
             wider.into_iter().chain([delete]).collect()
         }
-        Some(Source::Text(number)) => {
-            let Ok(filter) = Filter::parse(&settings.text) else { return Vec::new() };
+        Some(FilterSource::Text(number)) => {
+            let Ok(filter) = settings.text().tree() else { return Vec::new() };
+            let set = |filter: Filter| FilterCommand::Set(FilterText::from(&filter));
             let leaf = filter.leaves().get(number).map(|leaf| (*leaf).clone());
             let wider = leaf.zip(failed.by).and_then(|(leaf, by)| {
                 let (label, wide) = leaf.widened(by)?;
-                let text = filter.clone().with_leaf(number, |_| Some(wide)).to_string();
+                let wider = filter.clone().with_leaf(number, |_| Some(wide));
                 let tip = "Ask for no more than the nearest path has";
-                Some((label.to_owned(), tip, FilterCommand::text(text)))
+                Some((label.to_owned(), tip, set(wider)))
             });
-            let text = filter.with_leaf(number, |_| None).to_string();
-            let without = ("Drop this condition".to_owned(), drop, FilterCommand::text(text));
+            let without = filter.clone().with_leaf(number, |_| None);
+            let without = ("Drop this condition".to_owned(), drop, set(without));
             wider.into_iter().chain([without]).collect()
         }
-        Some(Source::Kept(number)) => {
-            let Some(kept) = settings.kept.get(number) else { return Vec::new() };
+        Some(FilterSource::Kept(number)) => {
+            let Some(kept) = settings.kept().get(number) else { return Vec::new() };
             let off = FilterCommand::Use(kept.name.clone(), Switch::Off);
             vec![(format!("Switch off {}", kept.name), "A kept filter asks for this", off)]
         }

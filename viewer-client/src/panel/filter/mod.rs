@@ -4,7 +4,7 @@ pub(crate) mod found;
 mod kept;
 mod text;
 
-use common::{Filter, Leaf, SelectorKind};
+use common::{Filter, FilterText, Leaf, SelectorKind};
 use egui::{Button, DragValue, Label, RichText, Ui};
 
 use super::widgets::{dot, toggle};
@@ -36,9 +36,8 @@ impl Panel for FilterPanel {
         let mut filter = |command| commands.push(Command::Filter(command));
         presets(ui, world, &mut filter);
         self.draft.ui(ui, world, &mut filter);
-        if let Ok(filter) = Filter::parse(&world.settings.filter.text)
-            && let Some(remark) = filter.leaves().into_iter().find_map(Leaf::remark)
-        {
+        let leaves = world.settings.filter.text().tree().map(Filter::leaves).unwrap_or_default();
+        if let Some(remark) = leaves.into_iter().find_map(Leaf::remark) {
             ui.add(Label::new(RichText::new(remark).small().weak()).wrap());
         }
         builder::ui(ui, world, &mut filter);
@@ -53,11 +52,11 @@ fn presets(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterCommand
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         for (name, text, meaning) in PRESETS {
-            let chosen = world.settings.filter.text == text;
+            let chosen = world.settings.filter.text().text() == text;
             let tip =
                 if text.is_empty() { meaning.to_owned() } else { format!("{meaning}: {text}") };
             if ui.add(Button::selectable(chosen, name)).on_hover_text(tip).clicked() {
-                filter(FilterCommand::text(text.to_owned()));
+                filter(FilterCommand::Set(FilterText::read(text)));
             }
         }
     });
@@ -67,21 +66,22 @@ fn switches(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterComman
     let settings = &world.settings.filter;
     ui.horizontal_wrapped(|ui| {
         let tip = "Without it, all paths are shown";
-        if let Some(switch) = toggle(ui, "On", tip, !settings.off) {
+        if let Some(switch) = toggle(ui, "On", tip, !settings.is_off()) {
             filter(FilterCommand::Enable(switch));
         }
         let tip = "Show what text and spheres would leave out";
-        if let Some(switch) = toggle(ui, "Invert", tip, settings.inverted) {
+        if let Some(switch) = toggle(ui, "Invert", tip, settings.is_inverted()) {
             filter(FilterCommand::Invert(switch));
         }
         let clear = Button::new("Clear");
         let tip = "Show all paths, and forget text and spheres";
-        let any = !settings.wanted().is_empty() || settings.off;
+        let any =
+            !settings.whole().wants_all() || settings.is_off() || settings.complaint().is_some();
         if ui.add_enabled(any, clear).on_hover_text(tip).clicked() {
             filter(FilterCommand::Clear);
         }
         if ui.button("Copy").on_hover_text("Copy the whole filter as text").clicked() {
-            ui.ctx().copy_text(settings.wanted());
+            ui.ctx().copy_text(settings.whole().text().to_owned());
         }
     });
 }
@@ -89,7 +89,7 @@ fn switches(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterComman
 /// The spheres, one a line.
 fn selectors(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterCommand)) {
     let settings = &world.settings.filter;
-    if settings.selectors.is_empty() {
+    if settings.selectors().is_empty() {
         let [start, end, any, all] =
             world.settings.layout.keys.selectors().map(|(key, _)| key.name());
         let text = format!(
@@ -99,11 +99,11 @@ fn selectors(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterComma
         ui.add(Label::new(RichText::new(text).small().weak()).wrap());
         return;
     }
-    for (number, sphere) in settings.selectors.iter().enumerate() {
+    for (number, sphere) in settings.selectors().iter().enumerate() {
         let number32 = number as u32;
         ui.horizontal(|ui| {
             dot(ui, theme::selector_color(sphere.kind));
-            let chosen = settings.chosen == Some(number);
+            let chosen = settings.chosen() == Some(number);
             let name = format!("{} {}", kind_name(sphere.kind), number + 1);
             let button = Button::selectable(chosen, name);
             if ui.add(button).on_hover_text(meaning(sphere.kind)).clicked() {

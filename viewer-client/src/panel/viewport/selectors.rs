@@ -90,7 +90,7 @@ fn under_cursor(projector: &Projector, place: Pos2, world: &World<'_>) -> Ball {
 
 /// The selector whose middle is under the cursor.
 fn centre_at(projector: &Projector, place: Pos2, world: &World<'_>) -> Option<usize> {
-    world.settings.filter.selectors.iter().position(|sphere| {
+    world.settings.filter.selectors().iter().position(|sphere| {
         let seen = projector.point(ball_of(sphere, world).centre);
         seen.is_some_and(|centre| centre.distance(place) <= REACH)
     })
