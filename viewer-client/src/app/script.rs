@@ -62,9 +62,12 @@ pub(super) fn outside_quotes(text: &str) -> impl Iterator<Item = (usize, char)> 
             let place = rest.start;
             let letter = text[rest.clone()].chars().next()?;
             rest.start += letter.len_utf8();
-            match closing_quote(&text[rest.clone()]).filter(|_| letter == '"') {
-                Some(length) => rest.start += length,
-                None => return Some((place, letter)),
+            if letter == '"'
+                && let Some(length) = closing_quote(&text[rest.clone()])
+            {
+                rest.start += length;
+            } else {
+                return Some((place, letter));
             }
         }
     })
