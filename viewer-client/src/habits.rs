@@ -313,7 +313,7 @@ mod tests {
             "{\"recent\": 7, \"layout\": {\"dark\": 1}}",
             "{",
             "null",
-            "{\"filters\": [{\"name\": \"x\", \"text\": \"edges >\"}, 7]}",
+            "{\"filters\": [{\"name\": \"x\"}, {\"text\": \"\"}, 7]}",
         ] {
             fs::write(&file, text).expect("a file is written");
             assert_eq!(Habits::load(&file), Habits::default(), "`{text}`");

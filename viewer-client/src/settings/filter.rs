@@ -233,7 +233,9 @@ impl FilterSettings {
     /// Asks for all paths; kept filters stay, switched off.
     fn clear(&mut self) {
         let (mut kept, scene) = (std::mem::take(&mut self.kept), self.scene.take());
-        kept.iter_mut().for_each(|kept| kept.on = false);
+        for kept in &mut kept {
+            kept.on = false;
+        }
         *self = Self { kept, scene, ..Self::default() };
     }
 
@@ -359,13 +361,13 @@ mod tests {
     }
 
     /// A scene whose materials have these names.
-    fn scene(materials: &[&str]) -> Option<Arc<FilterScene>> {
-        Some(Arc::new(FilterScene {
+    fn scene(materials: &[&str]) -> Arc<FilterScene> {
+        Arc::new(FilterScene {
             frame: SceneFrame { centre: DVec3::ZERO, scale: 1.0, light: 1.0 },
             materials: materials.iter().copied().map(FilterMaterial::from).collect(),
             strategies: Vec::new(),
             objects: Vec::new(),
-        }))
+        })
     }
 
     #[test]
@@ -393,7 +395,7 @@ mod tests {
     #[test]
     fn a_filter_that_another_scene_cannot_read_is_kept_marked_and_left_out() {
         let mut settings = FilterSettings::default();
-        settings.fit(scene(&["glass", "wall"]));
+        settings.fit(Some(scene(&["glass", "wall"])));
         let kept = FilterCommand::Keep("walls".to_owned());
         let used = FilterCommand::Use("walls".to_owned(), Switch::On);
         for command in [set("any on material wall"), kept, used, set("any on material glass")] {
@@ -403,7 +405,7 @@ mod tests {
         assert_eq!(settings.whole().text(), both, "on the first scene");
         assert!(settings.complaint().is_none(), "which has all of it");
         let before = settings.clone();
-        settings.fit(scene(&["wood", "wall"]));
+        settings.fit(Some(scene(&["wood", "wall"])));
         assert_eq!(settings, before, "nothing is forgotten");
         assert_eq!(settings.whole().text(), "any on material \"wall\"", "the other one holds");
         let complaint = settings.complaint().expect("a mark");
@@ -413,7 +415,7 @@ mod tests {
             Some(FilterSource::Kept(0)),
             "what is left out is not counted"
         );
-        settings.fit(scene(&["wood"]));
+        settings.fit(Some(scene(&["wood"])));
         assert!(settings.whole().wants_all(), "nothing can be asked here");
         assert!(settings.kept()[0].complaint().is_some(), "both are marked");
         settings.apply(&sphere(SelectorKind::Any));
@@ -422,7 +424,7 @@ mod tests {
         assert!(settings.whole().wants_all(), "half of it has no opposite");
         settings.apply(&FilterCommand::Invert(Switch::Off));
         settings.apply(&FilterCommand::DeleteAll);
-        settings.fit(scene(&["wall", "glass"]));
+        settings.fit(Some(scene(&["wall", "glass"])));
         assert_eq!(settings.whole().text(), both, "and it holds again");
         settings.fit(None);
         assert_eq!(settings.whole().text(), both, "as long as no scene is known, too");
