@@ -1,5 +1,7 @@
 //! `filter ...`: which paths are shown.
 
+use common::FilterText;
+
 use super::table::table;
 use crate::value::{Line, MOST_SELECTORS, Range, Sphere, Switch, range};
 
@@ -15,7 +17,7 @@ table! {
 
     commands {
         /// Shows the paths that a filter wants, beside the selectors.
-        Set "filter set" (text: String [Line::Filter]), Linked;
+        Set "filter set" (text: FilterText), Linked;
         /// Shows all paths: neither a text nor a selector is left.
         Clear "filter clear", Linked;
         /// Whether the filter holds at all.
@@ -42,12 +44,5 @@ table! {
         Load "filter load" (name: String [Line::Name]);
         /// Keeps a filter no longer.
         Forget "filter forget" (name: String [Line::Name]);
-    }
-}
-
-impl FilterCommand {
-    /// Makes `text` the filter, which leaves the selectors as they are; all paths where it is blank.
-    pub fn text(text: String) -> Self {
-        Self::Set(if text.is_empty() { "true".to_owned() } else { text })
     }
 }

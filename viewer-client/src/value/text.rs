@@ -1,6 +1,6 @@
 //! Texts that go to the end of the line.
 
-use common::Filter;
+use common::FilterText;
 
 use super::{CommandError, Value, Words};
 
@@ -11,8 +11,6 @@ pub enum Line {
     Any(&'static str),
     /// That it is a name, see [`name`].
     Name,
-    /// That it can be read as a filter.
-    Filter,
 }
 
 /// Letters of the longest name.
@@ -34,7 +32,6 @@ impl Value for String {
         let shown = match line {
             Line::Any(shown) => shown,
             Line::Name => "NAME",
-            Line::Filter => "TEXT",
         };
         shown.to_owned()
     }
@@ -44,10 +41,6 @@ impl Value for String {
         match line {
             Line::Any(_) => Ok(text.to_owned()),
             Line::Name => name(text).ok_or(CommandError::NoName(LONGEST)),
-            Line::Filter => match Filter::parse(text) {
-                Ok(_) => Ok(text.to_owned()),
-                Err(error) => Err(CommandError::BadFilter(error.to_string())),
-            },
         }
     }
 
@@ -59,8 +52,37 @@ impl Value for String {
         let examples = match line {
             Line::Any(_) => ["a.b", "two  words # and \"more\"; сцена"],
             Line::Name => ["x", "my caustics"],
-            Line::Filter => ["film in rect(0.25, 0, 1, 0.5)", "any on material \"a  #b; c\""],
         };
         examples.map(str::to_owned).to_vec()
+    }
+}
+
+/// How every path is asked for in a command, where a text must stand.
+const ALL: &str = "true";
+
+/// The text of a filter, which can be read.
+impl Value for FilterText {
+    type Limits = ();
+
+    fn form(name: &str, (): &()) -> String {
+        name.to_uppercase()
+    }
+
+    fn read(words: &mut Words<'_>, name: &str, (): &()) -> Result<Self, CommandError> {
+        let text = words.rest(&name.to_uppercase())?;
+        let read = Self::read(if text == ALL { "" } else { text });
+        match read.error() {
+            Some(problem) => Err(CommandError::BadFilter(problem.to_string())),
+            None => Ok(read),
+        }
+    }
+
+    fn text(&self) -> String {
+        let text = self.text();
+        if text.is_empty() { ALL.to_owned() } else { text.to_owned() }
+    }
+
+    fn examples((): &()) -> Vec<Self> {
+        ["", "film in rect(0.25, 0, 1, 0.5)", "any on material \"a  #b; c\""].map(Self::read).to_vec()
     }
 }

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
-use common::Filter;
+use common::FilterText;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -71,7 +71,7 @@ impl Preferences {
 
     /// What is worth remembering of these settings.
     pub fn of(settings: &Settings, before: &Self) -> Self {
-        let mut filters = settings.filter.kept.clone();
+        let mut filters = settings.filter.kept().to_vec();
         for kept in &mut filters {
             kept.on = false;
         }
@@ -92,7 +92,7 @@ impl Preferences {
             settings.apply(command);
         }
         settings.layout.clone_from(&self.panels);
-        settings.filter.kept.clone_from(&self.filters);
+        settings.filter.keep_all(&self.filters);
         // Only who has never seen them sees the first steps unasked.
         settings.window.hint |= self.is_first_time;
     }
@@ -132,16 +132,13 @@ impl Preferences {
             command.map_err(tell).ok()
         });
         let settings = worth_it(settings.collect()).collect();
+        // One whose text cannot be read is kept with its text: another version may read it.
         let filters = filters.into_iter().filter_map(|(given, StoredFilter { text, inverted })| {
-            match (name(&given), Filter::parse(&text)) {
-                (Some(name), Ok(_)) => Some(KeptFilter { name, text, on: false, inverted }),
-                (_, error) => {
-                    let error = error.err().map(|error| format!(": {error}"));
-                    let error = error.unwrap_or_default();
-                    complaints.push(format!("the filter `{given}` cannot be read{error}"));
-                    None
-                }
+            let name = name(&given);
+            if name.is_none() {
+                complaints.push(format!("`{given}` is not the name of a filter"));
             }
+            Some(KeptFilter::new(name?, FilterText::read(text), inverted))
         });
         let filters = filters.take(MOST_KEPT).collect();
         let panels: Layout = by_key(&content["panels"], "panels", complaints);
@@ -158,8 +155,9 @@ impl Preferences {
             let text = command.to_string();
             ((*words).to_owned(), text[words.len()..].trim().to_owned())
         });
-        let filters = self.filters.iter().map(|KeptFilter { name, text, inverted, .. }| {
-            (name.clone(), StoredFilter { text: text.clone(), inverted: *inverted })
+        let filters = self.filters.iter().map(|kept| {
+            let text = kept.text().text().to_owned();
+            (kept.name.clone(), StoredFilter { text, inverted: kept.inverted })
         });
         let stored = Stored {
             recent: self.times.clone(),

@@ -193,21 +193,21 @@ fn what_makes_no_sense_costs_nothing_else() {
     fs::create_dir_all(file.parent().expect("a folder")).expect("made");
     let content = json!({
         "recent": { "a:1": 7, "b:1": "yesterday" },
-        "filters": { "good": { "text": "edges > 2" }, "bad": { "text": "edges >" } },
+        "filters": { "good": { "text": "edges > 2" }, "newer": { "text": "edges >" }, "nameless": 7 },
         "settings": { "theme": "light", "scale": "9999", "of next year": "1", "cloud width": "9" },
         "panels": { "widths": [333, 9], "closed": ["path", "of next year"], "folded": 7 },
         "of next year": [1, 2],
     });
     fs::write(&file, content.to_string()).expect("written");
     let (read, complaints) = Preferences::load(&file);
-    for part in ["b:1", "`bad`", "between 50 and 300", "`of next year 1`", "folded"] {
+    for part in ["b:1", "nameless", "between 50 and 300", "`of next year 1`", "folded"] {
         let told = complaints.iter().any(|complaint| complaint.contains(part));
         assert!(told, "{part} in {complaints:#?}");
     }
     assert_eq!(complaints.len(), 5, "{complaints:#?}");
     let settings: Vec<String> = read.settings.values().map(ToString::to_string).collect();
     assert_eq!(settings, ["theme light"], "but for the size, and what is not remembered");
-    assert_eq!((read.recent.as_slice(), read.filters.len()), (["a:1".to_owned()].as_slice(), 1));
+    assert_eq!((read.recent.as_slice(), read.filters.len()), (["a:1".to_owned()].as_slice(), 2));
     let sides = crate::value::WindowSide::ALL.iter().map(|side| read.panels.width(*side));
     assert_eq!(sides.collect::<Vec<_>>(), [333, 380], "a width, and the usual one");
     // What this viewer cannot read is not its to throw away.
