@@ -5,7 +5,10 @@ mod classic;
 use common::{ExplorerCommand, MIN_RATE, Order, Pace, Seed, SelectorKind, SkipTo};
 use egui::{Key, KeyboardShortcut, Modifiers};
 
-use crate::command::{CloudSettings, Command, Form, ImageCommand, ImageSettings, PlayCommand, SceneCommand, SceneSettings, Setting, WindowCommand, WindowSettings};
+use crate::command::{
+    CloudSettings, Command, Form, ImageCommand, ImageSettings, PlayCommand, SceneCommand,
+    SceneSettings, Setting, WindowCommand, WindowSettings,
+};
 use crate::settings::Group as Settings;
 use crate::value::{Choice, KeyPreset, MousePreset, Number, Settable, Switch};
 use crate::world::World;

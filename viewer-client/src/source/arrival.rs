@@ -56,7 +56,7 @@ impl Source {
             let Some(batch) = daemon.next_batch(settings.cloud.threshold as usize) else { break };
             self.shown.take_in(&batch, settings.cloud.frozen);
         }
-        if daemon.filter_is_due(HAND, &settings.filter.wanted()) {
+        if daemon.filter_is_due(HAND, &settings.filter.whole().to_string()) {
             self.judge(settings);
             self.ask_for_paths(settings);
         }
@@ -121,7 +121,7 @@ impl Source {
 
     /// Tells a daemon that has just become known which paths are wanted.
     fn agree_on_paths(&mut self, settings: &Settings) {
-        let wanted = settings.filter.wanted();
+        let wanted = settings.filter.whole().to_string();
         if matches!(&self.origin, Origin::Daemon(daemon) if daemon.must_hear(&wanted)) {
             self.ask_for_paths(settings);
         }

@@ -1,7 +1,7 @@
 //! The filter: asked of a daemon, and applied to the paths that are held.
 
 use common::{
-    CompiledFilter, Filter, FilterScene, FilterTally, PathHeader, SceneFrame, VertexRecord,
+    CompiledFilter, FilterScene, FilterTally, PathHeader, SceneFrame, SceneMesh, VertexRecord,
 };
 
 use super::{Origin, Source};
@@ -23,7 +23,7 @@ impl Source {
             return;
         }
         if let Origin::Daemon(daemon) = &mut self.origin
-            && !daemon.ask_for_paths(&settings.filter.wanted())
+            && !daemon.ask_for_paths(&settings.filter.whole().to_string())
         {
             let problem = "The filter was not sent: the daemon is busy; set it again.";
             self.status.say(Err(problem.to_owned()));
@@ -62,18 +62,14 @@ impl Source {
     fn compiled(&self, settings: &Settings) -> Option<CompiledFilter> {
         let welcome = self.status.welcome.as_ref();
         let mesh = self.shown.model.as_ref().map(|model| &model.mesh);
-        let materials = mesh.map(|mesh| mesh.materials.as_slice()).unwrap_or_default();
         let unknown = SceneFrame { centre: glam::DVec3::ZERO, scale: 1.0, light: 1.0 };
-        let scene = FilterScene {
-            frame: welcome.map_or(unknown, |welcome| welcome.frame),
-            materials: materials.iter().map(|material| material.name.clone()).collect(),
-            background: FilterScene::background_among(materials),
-            strategies: welcome.map(|w| w.strategies.clone()).unwrap_or_default(),
-            objects: mesh.map(|mesh| mesh.objects.clone()).unwrap_or_default(),
-        };
-        let text = settings.filter.wanted();
-        let text = if text.is_empty() { "true" } else { text.as_str() };
-        Filter::parse(text).ok()?.compile(&scene).ok()
+        let none = SceneMesh::default();
+        let scene = FilterScene::new(
+            welcome.map_or(unknown, |welcome| welcome.frame),
+            mesh.unwrap_or(&none),
+            welcome.map(|w| w.strategies.clone()).unwrap_or_default(),
+        );
+        settings.filter.whole().tree().ok()?.compile(&scene).ok()
     }
 }
 

@@ -83,6 +83,8 @@ impl Value for FilterText {
     }
 
     fn examples((): &()) -> Vec<Self> {
-        ["", "film in rect(0.25, 0, 1, 0.5)", "any on material \"a  #b; c\""].map(Self::read).to_vec()
+        ["", "film in rect(0.25, 0, 1, 0.5)", "any on material \"a  #b; c\""]
+            .map(Self::read)
+            .to_vec()
     }
 }

@@ -326,7 +326,7 @@ impl Viewer {
             let lens = shown.camera.lens(1.0);
             let far = lens.eye + 0.5 * shown.camera.bounds().radius() * lens.forward;
             let gaze = Gaze { eye: lens.eye.into(), target: far.into() };
-            Appearance { gaze: Some(gaze), filter: settings.filter.wanted() }
+            Appearance { gaze: Some(gaze), filter: settings.filter.whole().to_string() }
         });
     }
 
