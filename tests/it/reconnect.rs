@@ -18,7 +18,11 @@ use viewer_client::source::status::LinkState;
 const PATIENCE: Duration = Duration::from_mins(1);
 
 fn daemon(listen: SocketAddr) -> Daemon {
-    let mut description = load("cornell").expect("a built-in scene").description;
+    daemon_of("cornell", listen)
+}
+
+fn daemon_of(scene: &str, listen: SocketAddr) -> Daemon {
+    let mut description = load(scene).expect("a built-in scene").description;
     (description.width, description.height) = (40, 30);
     let scene = Scene::new(&description).expect("a sound scene");
     let ensemble = EnsembleSettings {
@@ -73,6 +77,43 @@ fn a_viewer_survives_its_daemon() {
     assert!(viewer.bounds().is_some(), "the scene is the same one");
     drop(viewer);
     second.stop();
+}
+
+#[test]
+fn another_scene_is_shown_at_once_whatever_the_filter_names() {
+    let first = daemon(SocketAddr::from(([127, 0, 0, 1], 0)));
+    let address = first.address();
+    let mut viewer = Viewer::new(Source::daemon(address.to_string(), false));
+    let link = Link::start(Peer::open(address.to_string()), Box::new(|_| {})).expect("a thread");
+    viewer.set_link(link);
+    viewer.apply("filter set any on material \"fern\"".parse().expect("a command"));
+    let follows = |v: &Viewer, text: &str| {
+        let reply = v.status().filter.as_ref();
+        v.is_settled() && reply.is_some_and(|reply| reply.text == text && reply.error.is_none())
+    };
+    let wanted = "any on material \"fern\"";
+    until("the filter is in force", &mut viewer, |v| follows(v, wanted));
+    let room = viewer.bounds();
+
+    first.stop();
+    let second = daemon_of("furnace", address);
+    viewer.apply(Command::Session(SessionCommand::Reconnect));
+    let name = |v: &Viewer| v.status().welcome.as_ref().map(|w| w.scene_name.clone());
+    until("the other scene", &mut viewer, |v| name(v).as_deref() == Some("furnace"));
+    until("all of its paths", &mut viewer, |v| v.is_settled() && v.paths_received() > 100);
+    assert_ne!(viewer.bounds(), room, "its surfaces are shown");
+    let filter = &viewer.settings().filter;
+    assert!(filter.complaint().is_some_and(|why| why.message.contains("fern")), "marked");
+    assert_eq!((filter.text().text(), filter.whole().text()), (wanted, ""), "kept, and off");
+    assert!(viewer.take_failures().is_empty(), "nobody refused anything");
+
+    second.stop();
+    let third = daemon(address);
+    viewer.apply(Command::Session(SessionCommand::Reconnect));
+    until("the filter is in force again", &mut viewer, |v| follows(v, wanted));
+    assert_eq!(viewer.settings().filter.complaint(), None, "it can be read here");
+    drop(viewer);
+    third.stop();
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use common::{Attendee, Diagnostics, FilterCounts};
+use common::{Attendee, Diagnostics, FilterCounts, FilterScene};
 
 use crate::camera::ViewCamera;
 use crate::imaging::film::Film;
@@ -51,6 +51,8 @@ pub struct World<'a> {
     pub counted: Option<&'a FilterCounts>,
     /// The scene, once it has come.
     pub model: Option<&'a Model>,
+    /// What filters may ask for of it.
+    pub filter_scene: &'a FilterScene,
     /// When the frame began.
     pub now: Instant,
 }

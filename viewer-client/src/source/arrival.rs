@@ -28,7 +28,7 @@ pub struct Arrived {
 
 impl Source {
     /// Takes in what has come.
-    pub fn receive(&mut self, settings: &Settings) -> Arrived {
+    pub fn receive(&mut self, settings: &mut Settings) -> Arrived {
         let before = self.shown.store.counts();
         let (mut news, mut arrivals) = (false, VecDeque::new());
         if let Origin::Daemon(daemon) = &self.origin {
@@ -50,19 +50,19 @@ impl Source {
         Arrived { news, session }
     }
 
-    fn take_in_paths(&mut self, settings: &Settings) {
+    fn take_in_paths(&mut self, settings: &mut Settings) {
         let Origin::Daemon(daemon) = &mut self.origin else { return };
         for _ in 0..BATCHES_PER_FRAME {
             let Some(batch) = daemon.next_batch(settings.cloud.threshold as usize) else { break };
             self.shown.take_in(&batch, settings.cloud.frozen);
         }
-        if daemon.filter_is_due(HAND, &settings.filter.whole().to_string()) {
+        if daemon.filter_is_due(HAND, settings.filter.whole()) {
             self.judge(settings);
             self.ask_for_paths(settings);
         }
     }
 
-    fn accept(&mut self, arrival: Arrival, settings: &Settings) {
+    fn accept(&mut self, arrival: Arrival, settings: &mut Settings) {
         match arrival {
             Arrival::Link(state) => self.status.link = state,
             Arrival::Scene(scene) => self.set_model(Model::new(scene.mesh), settings),
@@ -71,7 +71,7 @@ impl Source {
         }
     }
 
-    fn hear(&mut self, event: TracerEvent, settings: &Settings) {
+    fn hear(&mut self, event: TracerEvent, settings: &mut Settings) {
         let steering = &mut self.status.steering;
         match event {
             TracerEvent::Welcome(welcome) => self.begin_session(*welcome, settings),
@@ -99,10 +99,11 @@ impl Source {
     }
 
     /// A session begins, perhaps on another scene.
-    fn begin_session(&mut self, welcome: Welcome, settings: &Settings) {
+    fn begin_session(&mut self, welcome: Welcome, settings: &mut Settings) {
         if welcome.scene_hash != self.shown.scene_hash {
             self.shown = Shown::new(welcome.scene_hash.clone(), &settings.cloud);
         }
+        self.shown.rename_for_filters(Some(&welcome));
         self.status.welcome(welcome);
         if let Origin::Daemon(daemon) = &mut self.origin {
             daemon.begin_session();
@@ -111,18 +112,18 @@ impl Source {
     }
 
     /// Takes in the scene's surfaces.
-    pub fn set_model(&mut self, model: Option<Model>, settings: &Settings) {
-        let welcome = self.status.welcome.as_ref();
-        let of_mesh = model.as_ref().and_then(|m| m.mesh.camera);
-        self.shown.set_model(model, welcome.map(|w| w.camera).or(of_mesh));
-        self.judge(settings);
+    pub fn set_model(&mut self, model: Option<Model>, settings: &mut Settings) {
+        self.shown.set_model(model, self.status.welcome.as_ref());
         self.agree_on_paths(settings);
     }
 
-    /// Tells a daemon that has just become known which paths are wanted.
-    fn agree_on_paths(&mut self, settings: &Settings) {
-        let wanted = settings.filter.whole().to_string();
-        if matches!(&self.origin, Origin::Daemon(daemon) if daemon.must_hear(&wanted)) {
+    /// Leaves out of the filter what cannot be asked of this scene, and tells a daemon that has just
+    /// become known which paths are wanted.
+    fn agree_on_paths(&mut self, settings: &mut Settings) {
+        self.fit(settings);
+        self.judge(settings);
+        if matches!(&self.origin, Origin::Daemon(daemon) if daemon.must_hear(settings.filter.whole()))
+        {
             self.ask_for_paths(settings);
         }
     }
@@ -137,7 +138,7 @@ impl Source {
     }
 
     /// The daemon follows another filter from now on, or refuses it.
-    fn accept_filter(&mut self, reply: FilterReply, settings: &Settings) {
+    fn accept_filter(&mut self, reply: FilterReply, settings: &mut Settings) {
         if let Origin::Daemon(daemon) = &mut self.origin {
             daemon.accept_filter(&reply);
         }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use common::{Appearance, FilterReply, Order, PathBatch, PathId};
+use common::{Appearance, FilterReply, FilterText, Order, PathBatch, PathId};
 
 use super::connection::{Inbox, Link};
 
@@ -30,7 +30,7 @@ struct WantedPaths {
     /// Filters set so far: the number of the last one.
     revision: u32,
     /// The filter that was asked for last.
-    text: String,
+    filter: FilterText,
     /// When the user changed the filter since.
     changed: Option<Instant>,
     /// The filter that the daemon last answered.
@@ -100,27 +100,27 @@ impl Daemon {
         self.wanted.changed.is_some()
     }
 
-    /// True once when the hand has rested for `rest` since it changed the filter to another `text`.
-    pub(super) fn filter_is_due(&mut self, rest: Duration, text: &str) -> bool {
+    /// True once when the hand has rested for `rest` since it changed the filter to another filter.
+    pub(super) fn filter_is_due(&mut self, rest: Duration, filter: &FilterText) -> bool {
         let is_due = self.wanted.changed.is_some_and(|at| at.elapsed() >= rest);
         if is_due {
             self.wanted.changed = None;
         }
-        is_due && self.wanted.text != text
+        is_due && self.wanted.filter != *filter
     }
 
-    /// True where the daemon may follow another filter than `text` in a new session.
-    pub(super) fn must_hear(&self, text: &str) -> bool {
-        self.wanted.revision > 0 || !text.is_empty()
+    /// True where the daemon may follow another filter than this one in a new session.
+    pub(super) fn must_hear(&self, filter: &FilterText) -> bool {
+        self.wanted.revision > 0 || *filter != FilterText::default()
     }
 
     /// Tells the daemon which paths to send from now on; those before were others. False where that
     /// could not be said.
-    pub(super) fn ask_for_paths(&mut self, text: &str) -> bool {
+    pub(super) fn ask_for_paths(&mut self, filter: &FilterText) -> bool {
         self.wanted.revision += 1;
-        text.clone_into(&mut self.wanted.text);
+        self.wanted.filter.clone_from(filter);
         let link = self.link.as_ref();
-        link.is_none_or(|link| link.set_filter(self.wanted.revision, text.to_owned()))
+        link.is_none_or(|link| link.set_filter(self.wanted.revision, filter.to_string()))
     }
 
     /// The daemon follows a filter from now on, or refuses it.

@@ -24,11 +24,10 @@ impl Source {
         }
         let model = Model::new(stage.mesh.clone());
         let bounds = stage.bounds();
-        let camera = stage.camera;
         let mut source = Self::of(Origin::File(Box::new(Playback::new(stage))), status);
         name.clone_into(&mut source.shown.scene_hash);
         let model = model.map(|model| Model { bounds: bounds.unwrap_or(model.bounds), ..model });
-        source.shown.set_model(model, Some(camera));
+        source.shown.set_model(model, source.status.welcome.as_ref());
         source.show_playback();
         source
     }

@@ -1,10 +1,10 @@
 //! The filter: asked of a daemon, and applied to the paths that are held.
 
-use common::{
-    CompiledFilter, FilterScene, FilterTally, PathHeader, SceneFrame, SceneMesh, VertexRecord,
-};
+use std::sync::Arc;
 
-use super::{Origin, Source};
+use common::{CompiledFilter, FilterTally, PathHeader, VertexRecord};
+
+use super::{Origin, Shown, Source};
 use crate::settings::Settings;
 
 impl Source {
@@ -23,7 +23,7 @@ impl Source {
             return;
         }
         if let Origin::Daemon(daemon) = &mut self.origin
-            && !daemon.ask_for_paths(&settings.filter.whole().to_string())
+            && !daemon.ask_for_paths(settings.filter.whole())
         {
             let problem = "The filter was not sent: the daemon is busy; set it again.";
             self.status.say(Err(problem.to_owned()));
@@ -58,18 +58,15 @@ impl Source {
         }
     }
 
+    /// Leaves out of the filter what cannot be asked of this scene, and nothing before one is known.
+    pub fn fit(&self, settings: &mut Settings) {
+        let Shown { scene_came, filter_scene, .. } = &self.shown;
+        settings.filter.fit(scene_came.then(|| Arc::clone(filter_scene)));
+    }
+
     /// The filter bound to what is known of the scene; `None` where that is not enough.
     fn compiled(&self, settings: &Settings) -> Option<CompiledFilter> {
-        let welcome = self.status.welcome.as_ref();
-        let mesh = self.shown.model.as_ref().map(|model| &model.mesh);
-        let unknown = SceneFrame { centre: glam::DVec3::ZERO, scale: 1.0, light: 1.0 };
-        let none = SceneMesh::default();
-        let scene = FilterScene::new(
-            welcome.map_or(unknown, |welcome| welcome.frame),
-            mesh.unwrap_or(&none),
-            welcome.map(|w| w.strategies.clone()).unwrap_or_default(),
-        );
-        settings.filter.whole().tree().ok()?.compile(&scene).ok()
+        settings.filter.whole().tree().ok()?.compile(&self.shown.filter_scene).ok()
     }
 }
 

@@ -25,7 +25,7 @@ pub mod units;
 
 pub use arrival::{Arrived, HAND};
 pub use daemon::Daemon;
-pub use shown::Shown;
+pub use shown::{Shown, filter_scene};
 
 use std::time::Instant;
 
@@ -96,8 +96,9 @@ impl Source {
     }
 
     /// Follows what the user has chosen already.
-    pub fn adopt(&mut self, settings: &Settings) {
+    pub fn adopt(&mut self, settings: &mut Settings) {
         self.shown.follow(&settings.cloud);
+        self.fit(settings);
         self.judge(settings);
     }
 

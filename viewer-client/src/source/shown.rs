@@ -1,6 +1,9 @@
 //! What came of one scene.
 
-use common::{FilterCounts, PathBatch};
+use std::sync::Arc;
+
+use common::{FilterCounts, FilterScene, PathBatch, SceneFrame, SceneMesh, Welcome};
+use glam::DVec3;
 
 use super::model::Model;
 use super::selection::Selection;
@@ -21,6 +24,8 @@ pub struct Shown {
     pub camera: ViewCamera,
     /// The scene has come, though it may have no surface.
     pub(super) scene_came: bool,
+    /// What filters may ask for, as far as it is known.
+    pub filter_scene: Arc<FilterScene>,
     /// Its surfaces.
     pub model: Option<Model>,
     /// The paths.
@@ -44,6 +49,7 @@ impl Shown {
             scene_hash,
             camera: ViewCamera::default(),
             scene_came: false,
+            filter_scene: Arc::new(filter_scene(None, None)),
             model: None,
             store: Store::new(0),
             image: ImageView::default(),
@@ -81,12 +87,28 @@ impl Shown {
     }
 
     /// Takes in the surfaces, and looks at them.
-    pub(super) fn set_model(&mut self, model: Option<Model>, render: Option<common::Camera>) {
+    pub(super) fn set_model(&mut self, model: Option<Model>, welcome: Option<&Welcome>) {
         if let Some(model) = &model {
+            let render = welcome.map(|welcome| welcome.camera).or(model.mesh.camera);
             self.camera.set_scene(model.bounds, render);
         }
         self.model = model;
         self.surfaces_revision = fresh();
         self.scene_came = true;
+        self.rename_for_filters(welcome);
     }
+
+    /// Brings what filters may ask for up to date with a session's names.
+    pub(super) fn rename_for_filters(&mut self, welcome: Option<&Welcome>) {
+        let mesh = self.model.as_ref().map(|model| &model.mesh);
+        self.filter_scene = Arc::new(filter_scene(welcome, mesh));
+    }
+}
+
+/// What filters may ask for, as far as it is known.
+pub fn filter_scene(welcome: Option<&Welcome>, mesh: Option<&SceneMesh>) -> FilterScene {
+    let unknown = SceneFrame { centre: DVec3::ZERO, scale: 1.0, light: 1.0 };
+    let frame = welcome.map_or(unknown, |welcome| welcome.frame);
+    let strategies = welcome.map(|welcome| welcome.strategies.clone()).unwrap_or_default();
+    FilterScene::new(frame, mesh.unwrap_or(&SceneMesh::default()), strategies)
 }

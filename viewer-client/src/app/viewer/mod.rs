@@ -85,7 +85,7 @@ impl Viewer {
     /// Leaves what was looked at, with everything that came of it, for something else.
     pub fn look_at(&mut self, source: Source) {
         self.source = source;
-        self.source.adopt(&self.settings);
+        self.source.adopt(&mut self.settings);
     }
 
     /// Takes over a connection to the daemon that is looked at.
@@ -146,6 +146,11 @@ impl Viewer {
         whole && idle && agrees && status.statistics.is_some()
     }
 
+    /// What the user has chosen.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
     /// What is known of the daemon.
     pub fn status(&self) -> &Status {
         &self.source.status
@@ -173,7 +178,7 @@ impl Viewer {
 
     /// Takes in what has come. True when there was anything.
     pub fn receive(&mut self) -> bool {
-        let arrived = self.source.receive(&self.settings);
+        let arrived = self.source.receive(&mut self.settings);
         if arrived.session && !self.source.status.embedded {
             self.desktop.preferences.note(&self.source.status.address);
         }
@@ -211,6 +216,7 @@ impl Viewer {
         if let Some(settings) = restored {
             self.settings = settings;
             self.source.shown.follow(&self.settings.cloud);
+            self.source.fit(&mut self.settings);
             self.source.filter_changed(&self.settings);
         }
     }
@@ -414,6 +420,7 @@ impl Viewer {
             recent: &self.desktop.preferences.recent,
             has_home: self.desktop.home.is_some(),
             model: shown.model.as_ref(),
+            filter_scene: &shown.filter_scene,
             now: Instant::now(),
         }
     }
@@ -446,7 +453,7 @@ impl Viewer {
     /// Shows paths without a scene: only the box round them is known.
     pub fn show_bounds(&mut self, bounds: Bounds) {
         let model = Model { mesh: common::SceneMesh::default(), bounds };
-        self.source.set_model(Some(model), &self.settings);
+        self.source.set_model(Some(model), &mut self.settings);
         self.go_on();
     }
 

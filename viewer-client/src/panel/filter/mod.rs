@@ -15,8 +15,6 @@ use crate::value::kind_name;
 use crate::value::theme;
 use crate::world::World;
 
-pub(super) use text::filter_scene;
-
 /// Light path expressions that people ask for most.
 const PRESETS: [(&str, &str, &str); 5] = [
     ("All", "", "Every path"),

@@ -3,13 +3,12 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use common::{Completion, FilterError, FilterScene, FilterText, SceneFrame, SceneMesh, complete};
+use common::{Completion, FilterError, FilterText, complete};
 use egui::text::{CCursor, CCursorRange, LayoutJob, TextFormat};
 use egui::{
     Button, EventFilter, FontId, Galley, Id, Key, Modifiers, Popup, PopupCloseBehavior, RectAlign,
     RichText, Stroke, TextBuffer, TextEdit, Ui,
 };
-use glam::DVec3;
 
 use crate::command::FilterCommand;
 use crate::value::theme;
@@ -122,7 +121,7 @@ impl Draft {
         let byte = byte_of(&self.text, cursor.primary.index.0);
         let offered = self.offered.take().filter(|(at, _)| *at == byte);
         let offered =
-            offered.unwrap_or_else(|| (byte, complete(&self.text, byte, &filter_scene(world))));
+            offered.unwrap_or_else(|| (byte, complete(&self.text, byte, world.filter_scene)));
         let (_, found) = self.offered.insert(offered);
         (!found.choices.is_empty()).then(|| found.clone())
     }
@@ -246,12 +245,4 @@ fn underlined(ui: &Ui, text: &str, fault: Option<&Range<usize>>, width: f32) -> 
 /// The byte of a text at which its character of this number begins.
 fn byte_of(text: &str, character: usize) -> usize {
     text.char_indices().nth(character).map_or(text.len(), |(byte, _)| byte)
-}
-
-/// What filters may ask for of the scene, as far as it has come.
-pub(in crate::panel) fn filter_scene(world: &World<'_>) -> FilterScene {
-    let names = world.names();
-    let frame = names.frame.unwrap_or(SceneFrame { centre: DVec3::ZERO, scale: 1.0, light: 1.0 });
-    let none = SceneMesh::default();
-    FilterScene::new(frame, names.mesh.unwrap_or(&none), names.strategies.to_vec())
 }

@@ -12,7 +12,7 @@ mod viewport;
 
 use std::time::Instant;
 
-use common::{ChainTotals, FailureCount, Statistics, StrategyStatistics};
+use common::{ChainTotals, FailureCount, FilterScene, Statistics, StrategyStatistics};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
@@ -21,6 +21,7 @@ use crate::camera::ViewCamera;
 use crate::imaging::Reference;
 use crate::imaging::film::Film;
 use crate::settings::Settings;
+use crate::source::filter_scene;
 use crate::source::selection::Selection;
 use crate::source::status::Status;
 use crate::source::store::Store;
@@ -38,6 +39,7 @@ pub(super) struct Stage {
     pub(super) recent: Vec<String>,
     pub(super) model: Option<crate::source::model::Model>,
     pub(super) playback: Option<crate::source::playback::Playback>,
+    filter_scene: FilterScene,
     panel: Option<Box<dyn Panel>>,
     pub(super) said: Vec<Command>,
 }
@@ -56,6 +58,7 @@ impl Stage {
             recent: Vec::new(),
             model: None,
             playback: None,
+            filter_scene: filter_scene(None, None),
             panel: Some(Box::new(panel)),
             said: Vec::new(),
         }
@@ -86,6 +89,7 @@ impl Stage {
             playback: self.playback.as_ref(),
             counted: None,
             model: self.model.as_ref(),
+            filter_scene: &self.filter_scene,
             now: Instant::now(),
         }
     }
@@ -94,6 +98,8 @@ impl Stage {
     pub(super) fn show(&mut self, ui: &mut Ui) {
         let Some(mut panel) = self.panel.take() else { return };
         let mut said = std::mem::take(&mut self.said);
+        let mesh = self.model.as_ref().map(|model| &model.mesh);
+        self.filter_scene = filter_scene(self.status.welcome.as_ref(), mesh);
         let world = self.world();
         hover::begin(ui.ctx());
         panel.ui(ui, &world, &mut said);
