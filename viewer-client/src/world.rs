@@ -11,10 +11,9 @@ use crate::settings::Settings;
 use crate::source::model::Model;
 use crate::source::playback::Playback;
 use crate::source::selection::{Names, Selection};
-use crate::source::status::Status;
+use crate::source::status::{LinkState, Status};
 use crate::source::steering::Moment;
 use crate::source::store::Store;
-use crate::value::PanelName;
 
 /// A view of the whole viewer, for the length of a frame.
 #[derive(Clone, Copy, Debug)]
@@ -68,16 +67,9 @@ impl World<'_> {
         self.counted.or_else(|| self.status.statistics.as_ref().map(|s| &s.filter))
     }
 
-    /// True where a panel has something to show: a file of paths has no chains that run.
-    pub fn has_use_for(&self, panel: PanelName) -> bool {
-        match panel {
-            PanelName::Playback => self.playback.is_some(),
-            PanelName::Explorer
-            | PanelName::Statistics
-            | PanelName::Diagnostics
-            | PanelName::Image => self.playback.is_none(),
-            PanelName::Filter | PanelName::Cloud | PanelName::Scene | PanelName::Path => true,
-        }
+    /// True where there are chains that run, or will be once a daemon answers.
+    pub fn has_chains(&self) -> bool {
+        self.playback.is_none() && self.status.link != LinkState::Idle
     }
 
     /// The other viewers of the daemon.

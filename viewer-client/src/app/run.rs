@@ -10,7 +10,7 @@ use crate::app::cli::{Action, Cli, Target, ViewArgs};
 use crate::app::headless::Wait;
 use crate::app::{bench, headless, script, share, watch, window};
 use crate::source::connection::Peer;
-use crate::source::{Source, dump, embedded};
+use crate::source::{Source, dump, embedded, file};
 
 /// A picture is taken after this long when nothing else is asked for.
 const DEFAULT_WAIT: Duration = Duration::from_secs(5);
@@ -68,15 +68,13 @@ fn view(args: &ViewArgs) -> anyhow::Result<()> {
 }
 
 /// A viewer of a file of paths, with the surfaces of a scene where one is named.
-fn open(file: &Path, surfaces: Option<&str>) -> anyhow::Result<Viewer> {
-    let read = dump::read(file)?;
+fn open(path: &Path, surfaces: Option<&str>) -> anyhow::Result<Viewer> {
+    let read = dump::read(path)?;
     let scene = surfaces.map(embedded::surfaces).transpose()?;
     let stage = dump::Stage::new(read, scene);
     // The window shows them, too, but nobody may look at it.
     for warning in &stage.warnings {
-        tracing::warn!("{}: {warning}", file.display());
+        tracing::warn!("{}: {warning}", path.display());
     }
-    let name =
-        file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    Ok(Viewer::new(Source::file(&name, stage)))
+    Ok(Viewer::new(Source::file(&file::name_of(path), stage)))
 }

@@ -1,4 +1,4 @@
-//! `connect`, `share`, `screenshot`, `copy`: what goes beyond the window.
+//! `connect`, `open`, `leave`, `share`, `screenshot`, `copy`: what goes beyond the window.
 
 use super::table::table;
 use crate::value::{Line, Part};
@@ -14,6 +14,10 @@ table! {
     commands {
         /// Watches another daemon, follows a link, or goes back to the own daemon.
         Connect "connect" (address: String [Line::Any("HOST:PORT|LINK|home")]);
+        /// Looks at a file of paths.
+        Open "open" (file: String [Line::Any("FILE")]);
+        /// Leaves what is looked at, and looks at nothing.
+        Leave "leave";
         /// Copies a link that restores camera, filter, selection and looks.
         Share "share";
         /// Writes the whole window as an image.

@@ -2,14 +2,17 @@
 
 use egui::{Button, ProgressBar, RichText, Ui};
 
-use super::Panel;
+use super::lines::Lines;
 use super::widgets::{row, setting};
+use super::{Panel, Section};
 use crate::command::{CloudCommand, CloudSettings, Command};
+use crate::keys::Group;
+use crate::value::PanelName;
 use crate::value::{Switch, format};
 use crate::world::World;
 
 /// The settings of the cloud.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Cloud;
 
 impl Panel for Cloud {
@@ -19,6 +22,22 @@ impl Panel for Cloud {
         look(ui, world, commands);
         ui.add_space(4.0);
         budget(ui, world, commands);
+    }
+}
+
+impl Section for Cloud {
+    const NAME: PanelName = PanelName::Cloud;
+    const TITLE: &'static str = "Paths";
+    const HELP: &'static [&'static str] = &[
+        "The lines are paths of light, each from the light to the camera, as the chains found \
+         them.",
+        "Colour says one thing at a time; the legend in the corner tells which. The budget bounds \
+         the memory for paths; older ones go first.",
+    ];
+    const KEYS: &'static [Group] = &[Group::Paths];
+
+    fn text(world: &World<'_>) -> String {
+        world.settings.cloud.commands().into_iter().collect::<Lines>().text()
     }
 }
 

@@ -3,9 +3,9 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Align, Button, Label, Layout, MenuBar, PopupCloseBehavior, RichText, Ui};
 
-use super::Panel;
 use super::connect::ConnectMenu;
 use super::widgets::{capitalised, scrolling};
+use super::{Panel, about};
 use crate::command::{Command, LayoutCommand, WindowCommand};
 use crate::keys::{Binding, Group, bindings, key_name};
 use crate::value::theme;
@@ -70,7 +70,7 @@ fn item(ui: &mut Ui, world: &World<'_>, binding: &Binding, commands: &mut Vec<Co
 fn windows(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     for name in PanelName::ALL {
         let mut open = world.settings.layout.is_open(name);
-        if ui.checkbox(&mut open, name.title()).changed() {
+        if ui.checkbox(&mut open, about(name).title).changed() {
             commands.push(Command::Layout(LayoutCommand::Panel(name, Switch::to(open))));
         }
     }

@@ -2,11 +2,13 @@
 
 use egui::{FontFamily, Label, RichText, Sense, Slider, Ui};
 
-use super::Panel;
 use super::widgets::{dot, number, row};
+use super::{Panel, Section};
 use crate::command::{Command, PlayCommand, form};
+use crate::keys::Group;
 use crate::source::dump::{Outcome, Stage, Step};
 use crate::source::playback::Playback;
+use crate::value::PanelName;
 use crate::value::Switch;
 use crate::value::format;
 use crate::value::theme;
@@ -16,7 +18,7 @@ use crate::world::World;
 const MOST_WARNINGS: usize = 5;
 
 /// The controls of a file of paths; blank without one.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct PlaybackPanel;
 
 impl Panel for PlaybackPanel {
@@ -33,6 +35,25 @@ impl Panel for PlaybackPanel {
         }
         ui.add_space(6.0);
         tally(ui, playback.stage());
+    }
+}
+
+impl Section for PlaybackPanel {
+    const NAME: PanelName = PanelName::Playback;
+    const TITLE: &'static str = "Playback";
+    const HELP: &'static [&'static str] =
+        &["Plays the file of paths; drag the line to go to any step."];
+    const KEYS: &'static [Group] = &[Group::Explorer];
+
+    fn applies(world: &World<'_>) -> bool {
+        world.playback.is_some()
+    }
+
+    fn text(world: &World<'_>) -> String {
+        world.playback.map_or_else(String::new, |playback| {
+            let (step, steps) = playback.place();
+            format!("step {step} of {steps}\n")
+        })
     }
 }
 

@@ -2,14 +2,17 @@
 
 use egui::{Button, RichText, Ui};
 
-use super::Panel;
+use super::lines::Lines;
 use super::widgets::{row, setting};
+use super::{Panel, Section};
 use crate::command::{CameraCommand, Command, SceneCommand, SceneSettings};
+use crate::keys::Group;
+use crate::value::PanelName;
 use crate::value::{ClipSide, Light, Shading, Switch, format};
 use crate::world::World;
 
 /// The settings of the view.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Scene;
 
 impl Panel for Scene {
@@ -36,6 +39,20 @@ impl Panel for Scene {
             ui.add_space(2.0);
             ui.label(RichText::new(text).small().weak());
         }
+    }
+}
+
+impl Section for Scene {
+    const NAME: PanelName = PanelName::Scene;
+    const TITLE: &'static str = "Scene";
+    const HELP: &'static [&'static str] = &[
+        "How surfaces are drawn. Make them transparent, cut the scene open, or leave edges alone \
+         to see the paths behind them.",
+    ];
+    const KEYS: &'static [Group] = &[Group::Camera];
+
+    fn text(world: &World<'_>) -> String {
+        world.settings.scene.commands().into_iter().collect::<Lines>().text()
     }
 }
 

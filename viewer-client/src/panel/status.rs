@@ -2,10 +2,11 @@
 
 use std::time::Duration;
 
-use common::{Queue, Statistics};
+use common::{Queue, Role, Statistics};
 use egui::{Align, Label, Layout, RichText, Sense, Ui};
 
 use super::Panel;
+use super::lines::Lines;
 use super::widgets::dot;
 use crate::command::{Command, DesktopCommand, SessionCommand, WindowCommand};
 use crate::source::status::{LinkState, SILENCE, Status};
@@ -184,4 +185,38 @@ fn figure(ui: &mut Ui, name: &str, value: &str, tip: &str) {
     ui.add_space(4.0);
     ui.add(Label::new(RichText::new(value).monospace()).selectable(false)).on_hover_text(tip);
     ui.add(Label::new(RichText::new(name).weak()).selectable(false)).on_hover_text(tip);
+}
+
+/// The state of the session, as text for the clipboard.
+pub(super) fn text(world: &World<'_>) -> String {
+    let status = world.status;
+    let mut lines = Lines::default();
+    lines.put(format_args!("daemon\t{}", status.address));
+    match &status.link {
+        LinkState::Idle => lines.put(format_args!("state\tidle")),
+        LinkState::Connected => lines.put(format_args!("state\tconnected")),
+        LinkState::Connecting => lines.put(format_args!("state\tconnecting")),
+        LinkState::Disconnected { reason, .. } => {
+            lines.put(format_args!("state\tdisconnected: {reason}"));
+        }
+    }
+    if let Some(welcome) = &status.welcome {
+        lines.put(format_args!("scene\t{}\t{}", welcome.scene_name, welcome.scene_hash));
+        lines.put(format_args!("session\t{}\tdaemon {}", welcome.session, welcome.server_version));
+        let role = if status.role() == Role::Driver { "driver" } else { "observer" };
+        lines.put(format_args!("role\t{role}"));
+    }
+    if let Some(latency) = status.latency {
+        lines.put(format_args!("latency\t{:.2} ms", 1e3 * latency.as_secs_f64()));
+    }
+    if let Some(statistics) = &status.statistics {
+        lines.put(format_args!("mutations a second\t{:.0}", status.mutation_rate()));
+        lines.put(format_args!("paths dropped\t{}", statistics.paths_dropped));
+        lines.put(format_args!("daemon's memory\t{}", format::bytes(statistics.memory_bytes)));
+    }
+    lines.put(format_args!(
+        "viewer's memory for paths\t{}",
+        format::bytes(world.store.byte_len() as u64)
+    ));
+    lines.text()
 }

@@ -50,7 +50,7 @@ impl Source {
         Arrived { news, session }
     }
 
-    fn take_in_paths(&mut self, settings: &mut Settings) {
+    fn take_in_paths(&mut self, settings: &Settings) {
         let Origin::Daemon(daemon) = &mut self.origin else { return };
         for _ in 0..BATCHES_PER_FRAME {
             let Some(batch) = daemon.next_batch(settings.cloud.threshold as usize) else { break };
@@ -138,7 +138,7 @@ impl Source {
     }
 
     /// The daemon follows another filter from now on, or refuses it.
-    fn accept_filter(&mut self, reply: FilterReply, settings: &mut Settings) {
+    fn accept_filter(&mut self, reply: FilterReply, settings: &Settings) {
         if let Origin::Daemon(daemon) = &mut self.origin {
             daemon.accept_filter(&reply);
         }

@@ -1,5 +1,7 @@
 //! A file of paths, looked at like a daemon's session.
 
+use std::path::Path;
+
 use common::{Role, Welcome};
 
 use super::dump::Stage;
@@ -63,6 +65,11 @@ impl Source {
             self.status.steering.focus.take_path(path);
         }
     }
+}
+
+/// What a file is called on screen.
+pub fn name_of(file: &Path) -> String {
+    file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
 /// What a daemon would say that showed such a file.

@@ -11,7 +11,7 @@ mod daemon;
 mod detail;
 pub mod dump;
 pub mod embedded;
-mod file;
+pub mod file;
 mod filtering;
 pub mod model;
 pub mod playback;

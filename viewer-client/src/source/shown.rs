@@ -110,5 +110,6 @@ pub fn filter_scene(welcome: Option<&Welcome>, mesh: Option<&SceneMesh>) -> Filt
     let unknown = SceneFrame { centre: DVec3::ZERO, scale: 1.0, light: 1.0 };
     let frame = welcome.map_or(unknown, |welcome| welcome.frame);
     let strategies = welcome.map(|welcome| welcome.strategies.clone()).unwrap_or_default();
-    FilterScene::new(frame, mesh.unwrap_or(&SceneMesh::default()), strategies)
+    let none = SceneMesh::default();
+    FilterScene::new(frame, mesh.unwrap_or(&none), strategies)
 }

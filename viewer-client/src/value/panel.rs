@@ -32,19 +32,4 @@ impl PanelName {
     pub fn is_usually_left(self) -> bool {
         matches!(self, Self::Cloud | Self::Filter | Self::Scene)
     }
-
-    /// The heading.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Cloud => "Paths",
-            Self::Filter => "Filter",
-            Self::Scene => "Scene",
-            Self::Image => "Image",
-            Self::Statistics => "Statistics",
-            Self::Diagnostics => "Chains",
-            Self::Path => "Selected path",
-            Self::Explorer => "Explorer",
-            Self::Playback => "Playback",
-        }
-    }
 }

@@ -1,11 +1,15 @@
 //! Commands that concern more than the window: other daemons, links, pictures of the window.
 
+use std::path::Path;
+
 use super::Viewer;
+use crate::app::background::{Outcome, TaskResult};
 use crate::app::share;
 use crate::command::{DesktopCommand, HOME};
 use crate::panel;
 use crate::source::connection::Peer;
-use crate::source::{Origin, Source};
+use crate::source::dump::{self, Stage};
+use crate::source::{Origin, Source, file};
 
 impl Viewer {
     /// Follows a command that concerns more than the window.
@@ -16,6 +20,13 @@ impl Viewer {
                     self.say(Err(problem));
                 }
             }
+            DesktopCommand::Open(file) => {
+                let started = self.tasks.start(move || open(Path::new(&file)));
+                if let Err(problem) = started {
+                    self.say(Err(problem));
+                }
+            }
+            DesktopCommand::Leave => self.look_at(Source::nothing()),
             DesktopCommand::Share => self.share(),
             DesktopCommand::Copy(part) => {
                 let seen = self.source.suited(&self.settings);
@@ -79,4 +90,11 @@ impl Viewer {
         self.run_script(commands);
         Ok(())
     }
+}
+
+/// Reads a file of paths, without the surfaces of a scene.
+fn open(file: &Path) -> Outcome {
+    let read = dump::read(file).map_err(|error| error.to_string())?;
+    let stage = Box::new(Stage::new(read, None));
+    Ok(TaskResult::Opened { name: file::name_of(file), stage })
 }

@@ -151,7 +151,7 @@ fn offered(window: &mut Window) -> Vec<String> {
     let seen = viewer.source.suited(&viewer.settings);
     let parts = PanelName::ALL.map(Part::Panel).into_iter().chain([Part::Status]);
     found.extend(parts.map(|part| panel::text_of(&viewer.world(&seen), part)));
-    let uses = PanelName::ALL.map(|name| viewer.world(&seen).has_use_for(name));
+    let uses = panel::SECTIONS.map(|about| (about.applies)(&viewer.world(&seen)));
     found.push(format!("{uses:?}"));
     found.push(format!("{:?}", viewer.settings));
     found.push(format!("{seen:?}"));

@@ -9,11 +9,14 @@ use common::{
 };
 use egui::{Button, Color32, ComboBox, DragValue, RichText, TextStyle, Ui};
 
-use super::Panel;
 use super::hover::{self, Pointed};
+use super::lines::Lines;
 use super::widgets::{dot, empty_state, number, row, setting};
+use super::{Panel, Section};
 use crate::command::{Command, form};
+use crate::keys::Group;
 use crate::settings::WindowSettings;
+use crate::value::PanelName;
 use crate::value::format;
 use crate::value::theme;
 use crate::world::World;
@@ -66,6 +69,37 @@ impl Panel for ExplorerPanel {
             moment::show(ui, world, shown, commands);
         }
         self.film.show(ui, world);
+    }
+}
+
+impl Section for ExplorerPanel {
+    const NAME: PanelName = PanelName::Explorer;
+    const TITLE: &'static str = "Explorer";
+    const HELP: &'static [&'static str] = &[
+        "A chain of your own, which never touches the image: seed it with a path and step it to \
+         see what each mutation does.",
+        "Only the driver may; the others watch.",
+    ];
+    const KEYS: &'static [Group] = &[Group::Explorer];
+
+    fn applies(world: &World<'_>) -> bool {
+        world.has_chains()
+    }
+
+    fn text(world: &World<'_>) -> String {
+        let state = &world.status.steering.explorer;
+        let mut lines = Lines::default();
+        if let Some(path) = state.current {
+            lines.put(format_args!("path\t{path}"));
+        }
+        lines.put(format_args!("steps\t{}\taccepted\t{}", state.steps, state.accepted));
+        if let Some(moment) = world.moment {
+            let step = &moment.step;
+            let strategy = world.strategy_name(usize::from(step.strategy.0));
+            lines.put(format_args!("step\t{}\t{strategy}\t{:?}", step.number, step.outcome));
+            lines.put(format_args!("acceptance\t{:.6}", step.acceptance));
+        }
+        lines.text()
     }
 }
 

@@ -8,12 +8,15 @@ mod readout;
 
 use egui::{Button, ColorImage, RichText, TextureHandle, TextureOptions, Ui};
 
-use super::Panel;
+use super::lines::Lines;
 use super::widgets::{empty_state, setting};
+use super::{Panel, Section};
 use crate::command::{Command, FilterCommand, ImageCommand};
+use crate::imaging::Comparison;
 use crate::imaging::{self, Sources};
 use crate::settings::ImageSettings;
 use crate::settings::region;
+use crate::value::PanelName;
 use crate::value::format;
 use crate::value::{Channel, Choice as _, Layer, ToneCurve};
 use crate::world::World;
@@ -81,6 +84,41 @@ impl Panel for ImagePanel {
         );
         ui.label(RichText::new(text).small().weak());
         self.files.show(ui, world, commands);
+    }
+}
+
+impl Section for ImagePanel {
+    const NAME: PanelName = PanelName::Image;
+    const TITLE: &'static str = "Image";
+    const HELP: &'static [&'static str] = &[
+        "The image that the chains have made so far. The wheel comes closer, the right button \
+         shifts.",
+        "Click a pixel, or drag a rectangle: then only paths to there are sent. Ctrl+C copies the \
+         raw values of the pixel under the cursor.",
+    ];
+
+    fn applies(world: &World<'_>) -> bool {
+        world.has_chains()
+    }
+
+    fn text(world: &World<'_>) -> String {
+        let mut lines = Lines::default();
+        let [width, height] = world.film.size();
+        lines.put(format_args!("pixels\t{width} × {height}"));
+        let effort = world.film.steps() as f64 / (width * height).max(1) as f64;
+        lines.put(format_args!("mutations a pixel\t{effort:.1}"));
+        lines.put(format_args!("exposure\t{} EV", world.settings.image.exposure.stops()));
+        let Some(reference) = world.reference else { return lines.text() };
+        lines.put(format_args!("reference\t{}", reference.name));
+        if let Some(comparison) = Comparison::of(world.film, reference) {
+            lines.put(format_args!("relMSE\t{:.6e}", comparison.relative_mse));
+            lines.put(format_args!("relMSE, best 99 %\t{:.6e}", comparison.trimmed));
+            lines.put(format_args!("energy\t{:.3} %", 100.0 * comparison.mean_ratio));
+        }
+        if let Some(flip) = world.flip {
+            lines.put(format_args!("FLIP\t{:.5}", flip.mean));
+        }
+        lines.text()
     }
 }
 

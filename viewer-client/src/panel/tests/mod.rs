@@ -13,6 +13,7 @@ mod viewport;
 use std::time::Instant;
 
 use common::{ChainTotals, FailureCount, FilterScene, Statistics, StrategyStatistics};
+use egui::{Event, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 

@@ -6,7 +6,7 @@ use egui::{Modifiers, PointerButton};
 
 use super::*;
 use crate::command::{DesktopCommand, FilterCommand, LayoutCommand};
-use crate::panel::{copied, heading, image, status, viewport};
+use crate::panel::{heading, image, status, text_of, viewport};
 use crate::source::status::LinkState;
 use crate::synthetic::{batch, welcome};
 use crate::value::MousePreset;
@@ -77,7 +77,7 @@ fn every_part_has_a_text_for_the_clipboard() {
     let mut reader = paths.reader();
     let path = reader.next().expect("a path");
     stage.selection = Some(Selection::new(path.header, path.vertices.to_vec()));
-    let text = |source| copied::text(&stage.world(), source);
+    let text = |source| text_of(&stage.world(), source);
     for (source, expected) in [
         (Part::Status, "daemon\t127.0.0.1:50061"),
         (Part::Panel(PanelName::Statistics), "bidirectional\t2000\t1500\t250\t0.45"),
@@ -197,5 +197,15 @@ fn dragging_does_what_other_programs_made_a_habit() {
     ] {
         let verbs = dragged(mouse, button, modifiers);
         assert_eq!(verbs.join(" "), expected, "{mouse} {button:?} {modifiers:?}");
+    }
+}
+
+#[test]
+fn every_name_has_its_section() {
+    let names: Vec<_> = SECTIONS.iter().map(|about| about.name).collect();
+    assert_eq!(names, PanelName::ALL, "each once, and in the same order");
+    for about in SECTIONS {
+        let said = std::iter::once(about.title).chain(about.help.iter().copied());
+        assert!(about.help.len() <= 3 && said.clone().all(|text| !text.is_empty()), "{about:?}");
     }
 }
