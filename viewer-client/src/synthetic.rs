@@ -109,12 +109,12 @@ impl Delivery {
     pub(crate) fn put(self, inbox: &Inbox) {
         let Self { welcome, scene, film, batches, more } = self;
         inbox.push(Arrival::Link(LinkState::Connected));
-        inbox.hear(TracerEvent::Welcome(Box::new(welcome)));
+        inbox.put(TracerEvent::Welcome(Box::new(welcome)));
         inbox.push(Arrival::Scene(Box::new(scene)));
-        inbox.hear(TracerEvent::Film(film));
+        inbox.put(TracerEvent::Film(film));
         let paths = batches.into_iter().map(|batch| TracerEvent::Paths(Arc::new(batch)));
         for event in more.into_iter().chain(paths) {
-            inbox.hear(event);
+            inbox.put(event);
         }
     }
 }

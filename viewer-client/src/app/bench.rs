@@ -198,7 +198,7 @@ fn fill(viewer: &mut Viewer, paths: u32, vertices: usize) -> Duration {
         };
         let started = Instant::now();
         if let Some(inbox) = viewer.inbox() {
-            inbox.hear(TracerEvent::Paths(Arc::new(batch)));
+            inbox.put(TracerEvent::Paths(Arc::new(batch)));
         }
         viewer.receive();
         taken += started.elapsed();

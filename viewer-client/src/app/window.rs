@@ -129,7 +129,7 @@ impl eframe::App for Window {
         }
         self.viewer.ui(ui);
         if let Some(keeper) = &mut self.keeper {
-            if let Some(wait) = keeper.note(self.viewer.preferences(), Instant::now()) {
+            if let Some(wait) = keeper.update(self.viewer.preferences(), Instant::now()) {
                 ui.ctx().request_repaint_after(wait);
             }
             if let Some(problem) = keeper.problem() {

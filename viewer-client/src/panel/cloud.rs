@@ -19,7 +19,7 @@ impl Panel for Cloud {
     fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
         ui.horizontal(|ui| buttons(ui, world, commands));
         ui.add_space(4.0);
-        look(ui, world, commands);
+        appearance(ui, world, commands);
         ui.add_space(4.0);
         budget(ui, world, commands);
     }
@@ -56,7 +56,7 @@ fn buttons(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     }
 }
 
-fn look(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+fn appearance(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     use CloudSettings as Cloud;
     setting(ui, world, &Cloud::color(), commands);
     if world.settings.cloud.color.has_scale() {

@@ -41,7 +41,7 @@ use crate::command::Command;
 use crate::value::{PanelName, Part, WindowSide};
 use crate::world::World;
 use lines::Lines;
-use sides::{Sides, edge, note_pick, one_side, reveal};
+use sides::{Sides, edge, one_side, reveal, reveal_pick};
 
 /// A part of the window.
 pub trait Panel: Debug {

@@ -47,7 +47,7 @@ impl Sides {
         let is_shown = |name: &PanelName| layout.is_open(*name) && (about(*name).applies)(world);
         let names =
             WindowSide::ALL.map(|side| layout.side(side).filter(is_shown).collect::<Vec<_>>());
-        follow_opened(ui, &names);
+        show_side_of_opened(ui, &names);
         let window = ui.available_width();
         let room = Settled::room(window);
         let wished = WindowSide::ALL.map(|side| {
@@ -101,7 +101,7 @@ fn use_side(ui: &Ui, side: WindowSide) {
 }
 
 /// A section that has just been opened is to be seen.
-fn follow_opened(ui: &Ui, names: &[Vec<PanelName>; 2]) {
+fn show_side_of_opened(ui: &Ui, names: &[Vec<PanelName>; 2]) {
     let id = Id::unique("sections before");
     let before: Option<[Vec<PanelName>; 2]> = ui.data(|data| data.get_temp(id));
     if before.as_ref() == Some(names) {
@@ -291,7 +291,7 @@ pub(super) fn reveal(ui: &Ui, name: PanelName, world: &World<'_>, commands: &mut
 }
 
 /// Notes that the user has clicked on a path in the view, whose section is to be seen.
-pub(super) fn note_pick(ui: &Ui) {
+pub(super) fn reveal_pick(ui: &Ui) {
     ui.data_mut(|data| data.insert_temp(Id::unique("picked in the view"), true));
 }
 

@@ -41,7 +41,7 @@ impl Source {
         let mut session = false;
         for arrival in arrivals {
             session |= matches!(arrival, Arrival::Said(TracerEvent::Welcome(_)));
-            self.accept(arrival, settings);
+            self.apply_arrival(arrival, settings);
         }
         self.show_remark(remarks);
         self.take_in_paths(settings);
@@ -62,16 +62,16 @@ impl Source {
         }
     }
 
-    fn accept(&mut self, arrival: Arrival, settings: &mut Settings) {
+    fn apply_arrival(&mut self, arrival: Arrival, settings: &mut Settings) {
         match arrival {
             Arrival::Link(state) => self.status.link = state,
             Arrival::Scene(scene) => self.set_model(Model::new(scene.mesh), settings),
             Arrival::Latency(latency) => self.status.latency = Some(latency),
-            Arrival::Said(event) => self.hear(event, settings),
+            Arrival::Said(event) => self.apply_event(event, settings),
         }
     }
 
-    fn hear(&mut self, event: TracerEvent, settings: &mut Settings) {
+    fn apply_event(&mut self, event: TracerEvent, settings: &mut Settings) {
         let steering = &mut self.status.steering;
         match event {
             TracerEvent::Welcome(welcome) => self.begin_session(*welcome, settings),
@@ -79,8 +79,8 @@ impl Source {
             TracerEvent::FilterReply(reply) => self.accept_filter(reply, settings),
             TracerEvent::Notice(Notice::Detail(reply)) => self.accept_detail(*reply),
             TracerEvent::Notice(notice) => steering.accept(notice),
-            TracerEvent::FocusPath(path) => steering.focus.take_path(path),
-            TracerEvent::FocusStep(step) => steering.focus.take_step(step),
+            TracerEvent::FocusPath(path) => steering.focus.set_path(path),
+            TracerEvent::FocusStep(step) => steering.focus.add_step(step),
             TracerEvent::FocusGap(steps) => steering.focus.miss(steps),
             TracerEvent::Film(tile) => {
                 if !self.shown.image.film.accept(&tile) {
@@ -92,7 +92,7 @@ impl Source {
                     tracing::warn!("a tile of the explorer's film contradicts itself");
                 }
             }
-            TracerEvent::Gap(gap) => self.shown.store.note_gap(gap.paths),
+            TracerEvent::Gap(gap) => self.shown.store.count_gap(gap.paths),
             TracerEvent::Paths(batch) => self.shown.take_in(&batch, settings.cloud.frozen),
             TracerEvent::SnapshotEnd | TracerEvent::Goodbye(_) | TracerEvent::Unknown => {}
         }

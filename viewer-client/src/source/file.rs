@@ -62,7 +62,7 @@ impl Source {
         }
         self.tally();
         if let Some(path) = scene.current {
-            self.status.steering.focus.take_path(path);
+            self.status.steering.focus.set_path(path);
         }
     }
 }

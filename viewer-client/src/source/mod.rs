@@ -97,7 +97,7 @@ impl Source {
 
     /// Follows what the user has chosen already.
     pub fn adopt(&mut self, settings: &mut Settings) {
-        self.shown.follow(&settings.cloud);
+        self.shown.configure(&settings.cloud);
         self.fit(settings);
         self.judge(settings);
     }

@@ -57,7 +57,7 @@ impl Shown {
             pointed: None,
             counted: None,
         };
-        shown.follow(cloud);
+        shown.configure(cloud);
         shown
     }
 
@@ -72,7 +72,7 @@ impl Shown {
     }
 
     /// Keeps as much as the user allows, and draws what the user wants.
-    pub fn follow(&mut self, cloud: &CloudSettings) {
+    pub fn configure(&mut self, cloud: &CloudSettings) {
         self.store.set_budget((cloud.budget_mib as usize) << 20);
         self.store.set_drawn(if cloud.dim > 0.0 { Drawn::All } else { Drawn::Matched });
     }

@@ -169,7 +169,7 @@ impl Preferences {
     }
 
     /// Remembers a connection as the newest.
-    pub fn note(&mut self, address: &str) {
+    pub fn add_recent(&mut self, address: &str) {
         let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
         // A clock that was put back must not make it older than the others.
         let newest = self.times.values().copied().max().map_or(0, |newest| newest + 1);
@@ -262,7 +262,7 @@ impl Keeper {
 
     /// Takes note of the preferences, and writes them if they have been others for a while. The answer is
     /// when to ask again, even if nothing happens.
-    pub fn note(&mut self, present: Preferences, now: Instant) -> Option<Duration> {
+    pub fn update(&mut self, present: Preferences, now: Instant) -> Option<Duration> {
         if present == self.tried {
             self.changed = None;
             return None;

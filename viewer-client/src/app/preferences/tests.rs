@@ -59,9 +59,9 @@ fn preferences_survive_a_file() {
         ],
     );
     for i in 0..20 {
-        changed.note(&format!("127.0.0.1:{i}"));
+        changed.add_recent(&format!("127.0.0.1:{i}"));
     }
-    changed.note("127.0.0.1:15");
+    changed.add_recent("127.0.0.1:15");
     assert_eq!(changed.recent.len(), MOST, "bounded");
     assert_eq!(changed.recent[..2], ["127.0.0.1:15", "127.0.0.1:19"], "the newest first");
     save(&file, &first, &changed);
@@ -91,23 +91,23 @@ fn a_change_is_written_soon_and_once() {
     let mut keeper = Keeper::new(file.clone(), usual.clone());
     let start = Instant::now();
     let later = |seconds: u64| start + Duration::from_secs(seconds);
-    assert_eq!(keeper.note(usual.clone(), start), None, "nothing has changed");
+    assert_eq!(keeper.update(usual.clone(), start), None, "nothing has changed");
     let sheet = after(&usual, &["help on", "palette on", "seen on"]);
-    assert_eq!(keeper.note(sheet, start), None, "sheets are not kept");
+    assert_eq!(keeper.update(sheet, start), None, "sheets are not kept");
     let light = after(&usual, &["theme light"]);
-    assert_eq!(keeper.note(light.clone(), start), Some(PATIENCE), "not at once");
+    assert_eq!(keeper.update(light.clone(), start), Some(PATIENCE), "not at once");
     let larger = after(&light, &["scale 150"]);
-    let left = keeper.note(larger.clone(), later(1));
+    let left = keeper.update(larger.clone(), later(1));
     assert_eq!(left, Some(PATIENCE.saturating_sub(Duration::from_secs(1))), "the first counts");
     assert!(!file.exists(), "it may still change");
-    assert_eq!(keeper.note(larger.clone(), later(2)), None, "written");
+    assert_eq!(keeper.update(larger.clone(), later(2)), None, "written");
     assert_eq!(loaded(&file), larger, "the newest");
     let names: Vec<_> = fs::read_dir(folder.path().join("lvis")).expect("a folder").collect();
     assert_eq!(names.len(), 2, "the file and its lock: {names:?}");
     fs::remove_file(&file).expect("the file");
-    assert_eq!(keeper.note(larger, later(9)), None, "nothing new");
+    assert_eq!(keeper.update(larger, later(9)), None, "nothing new");
     assert!(!file.exists(), "so nothing is written");
-    assert_eq!(keeper.note(light.clone(), later(10)), Some(PATIENCE), "another change");
+    assert_eq!(keeper.update(light.clone(), later(10)), Some(PATIENCE), "another change");
     keeper.finish(light.clone());
     assert_eq!(loaded(&file), light, "the end does not wait");
 }
@@ -120,10 +120,10 @@ fn two_viewers_lose_nothing_of_each_other() {
     let (mut one, mut other) =
         (Keeper::new(file.clone(), first.clone()), Keeper::new(file.clone(), first.clone()));
     let mut light = after(&first, &["theme light", "filter set edges > 2", "filter keep long"]);
-    light.note("one:1");
+    light.add_recent("one:1");
     one.finish(light.clone());
     let mut large = after(&first, &["scale 150", "filter set edges < 3", "filter keep short"]);
-    large.note("other:1");
+    large.add_recent("other:1");
     other.finish(large.clone());
     one.finish(after(&light, &["keys classic", "panel path off"]));
     other.finish(after(&large, &["mouse maya", "filter forget short"]));

@@ -180,7 +180,7 @@ impl Viewer {
     pub fn receive(&mut self) -> bool {
         let arrived = self.source.receive(&mut self.settings);
         if arrived.session && !self.source.status.embedded {
-            self.desktop.preferences.note(&self.source.status.address);
+            self.desktop.preferences.add_recent(&self.source.status.address);
         }
         let finished = self.finish_tasks();
         self.appear();
@@ -208,14 +208,14 @@ impl Viewer {
                 self.carry_out(command);
                 if self.settings != before && !form.is(Trait::Passing) {
                     let time = self.started.elapsed().as_secs_f64();
-                    self.history.note(before, form.words, time);
+                    self.history.record(before, form.words, time);
                 }
                 return;
             }
         };
         if let Some(settings) = restored {
             self.settings = settings;
-            self.source.shown.follow(&self.settings.cloud);
+            self.source.shown.configure(&self.settings.cloud);
             self.source.fit(&mut self.settings);
             self.source.filter_changed(&self.settings);
         }
@@ -226,7 +226,7 @@ impl Viewer {
             Command::Camera(command) => self.source.shown.camera.apply(command),
             Command::Cloud(command) => {
                 self.settings.cloud.set(&command);
-                self.source.shown.follow(&self.settings.cloud);
+                self.source.shown.configure(&self.settings.cloud);
                 if command == CloudCommand::Clear {
                     self.source.shown.store.clear();
                 }

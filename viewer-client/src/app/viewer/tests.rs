@@ -24,7 +24,7 @@ fn take_in(viewer: &mut Viewer, delivery: Delivery) {
 
 /// Takes in what the tracer says.
 fn hear(viewer: &mut Viewer, event: TracerEvent) {
-    viewer.inbox().expect("a daemon").hear(event);
+    viewer.inbox().expect("a daemon").put(event);
     viewer.receive();
 }
 

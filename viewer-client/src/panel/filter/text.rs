@@ -53,7 +53,7 @@ impl Draft {
         if let Some(completion) = &completion {
             self.choose(ui, id, completion);
         }
-        self.follow();
+        self.read_anew();
         let read = self.read.clone();
         let mut layouter = |ui: &Ui, text: &dyn TextBuffer, width: f32| {
             // While it is edited, it is ahead of what was read.
@@ -80,7 +80,7 @@ impl Draft {
         }
         let (enter, escape) = ui.input(|i| (i.key_pressed(Key::Enter), i.key_pressed(Key::Escape)));
         let over_offers = self.show_offers(ui, &response, completion);
-        self.follow();
+        self.read_anew();
         if response.has_focus() && escape {
             self.text = current.to_string();
             response.surrender_focus();
@@ -101,7 +101,7 @@ impl Draft {
     }
 
     /// Reads what was written since.
-    fn follow(&mut self) {
+    fn read_anew(&mut self) {
         if self.read.text() != self.text {
             self.read = FilterText::read(self.text.as_str());
             self.offered = None;
@@ -131,7 +131,7 @@ impl Draft {
         let last = completion.choices.len().min(MOST) - 1;
         self.line = self.line.min(last);
         match key_for_choices(ui) {
-            Some(Key::Tab) => self.take(ui, id, completion, self.line),
+            Some(Key::Tab) => self.insert(ui, id, completion, self.line),
             Some(Key::ArrowDown) => self.line = (self.line + 1).min(last),
             Some(Key::ArrowUp) => self.line = self.line.saturating_sub(1),
             Some(_) => self.dismissed = true,
@@ -140,7 +140,7 @@ impl Draft {
     }
 
     /// Writes a choice into the text, and puts the cursor behind it.
-    fn take(&mut self, ui: &Ui, id: Id, completion: &Completion, line: usize) {
+    fn insert(&mut self, ui: &Ui, id: Id, completion: &Completion, line: usize) {
         let Some((text, cursor)) = completion.taken(&self.text, line) else { return };
         let cursor = text[..cursor].chars().count();
         self.text = text;
@@ -185,7 +185,7 @@ impl Draft {
             });
         let pressed = ui.input(|input| input.pointer.any_pressed());
         if let Some(number) = clicked.filter(|_| pressed) {
-            self.take(ui, response.id, &completion, number);
+            self.insert(ui, response.id, &completion, number);
         }
         shown.is_some_and(|shown| shown.response.contains_pointer())
     }

@@ -61,7 +61,7 @@ impl Glimpse {
         }
         if !self.looked {
             self.looked = true;
-            self.found = look(projector, place, world);
+            self.found = path_at(projector, place, world);
         }
         let Some(found) = &self.found else { return };
         let [u, v] = found.header.film;
@@ -95,7 +95,7 @@ fn off(place: Pos2, [a, b]: [Pos2; 2]) -> f32 {
     (a + t * along).distance(place)
 }
 
-fn look(projector: &Projector, place: Pos2, world: &World<'_>) -> Option<Selection> {
+fn path_at(projector: &Projector, place: Pos2, world: &World<'_>) -> Option<Selection> {
     let sight = Sight {
         store: world.store,
         lens: &projector.lens,

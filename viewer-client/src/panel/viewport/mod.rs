@@ -18,7 +18,7 @@ mod selectors;
 use egui::{Role, Sense, Ui, WidgetInfo};
 
 use self::project::Projector;
-use super::{Panel, note_pick};
+use super::{Panel, reveal_pick};
 use crate::command::{Command, PathCommand};
 use crate::draw::gpu::ViewportCallback;
 use crate::world::World;
@@ -47,7 +47,7 @@ impl Panel for Viewport {
             {
                 let aim = projector.aim(place, TOLERANCE);
                 commands.push(Command::Path(PathCommand::Pick(aim)));
-                note_pick(ui);
+                reveal_pick(ui);
             }
         }
 

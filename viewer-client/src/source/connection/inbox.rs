@@ -189,7 +189,7 @@ pub struct Inbox {
 
 impl Inbox {
     /// Puts in what the tracer said. False where that is nothing to show.
-    pub fn hear(&self, event: TracerEvent) -> bool {
+    pub fn put(&self, event: TracerEvent) -> bool {
         self.edit(|waiting| {
             match event {
                 TracerEvent::SnapshotEnd | TracerEvent::Goodbye(_) | TracerEvent::Unknown => {
@@ -307,7 +307,7 @@ mod tests {
         let inbox = Inbox::default();
         let large = batch(20_000);
         for sequence in 0..30 {
-            inbox.hear(TracerEvent::Paths(Arc::new(large.clone().with_sequence(sequence))));
+            inbox.put(TracerEvent::Paths(Arc::new(large.clone().with_sequence(sequence))));
         }
         let kept: Vec<_> = std::iter::from_fn(|| inbox.next_batch(0)).collect();
         let bytes: usize = kept.iter().map(|batch| batch.byte_len()).sum();
@@ -324,13 +324,13 @@ mod tests {
     fn only_the_newest_tile_of_a_row_waits() {
         let inbox = Inbox::default();
         for _ in 0..100 {
-            inbox.hear(TracerEvent::Film(tile(0, 32, 8)));
-            inbox.hear(TracerEvent::ExplorerFilm(tile(0, 32, 8)));
-            inbox.hear(TracerEvent::Film(tile(32, 32, 8)));
+            inbox.put(TracerEvent::Film(tile(0, 32, 8)));
+            inbox.put(TracerEvent::ExplorerFilm(tile(0, 32, 8)));
+            inbox.put(TracerEvent::Film(tile(32, 32, 8)));
         }
         assert_eq!(inbox.take_arrivals().len(), 3, "two halves, and the explorer's");
-        inbox.hear(TracerEvent::Film(tile(0, 32, 8)));
-        inbox.hear(TracerEvent::Film(tile(32, 32, 16)));
+        inbox.put(TracerEvent::Film(tile(0, 32, 8)));
+        inbox.put(TracerEvent::Film(tile(32, 32, 16)));
         assert_eq!(inbox.take_arrivals().len(), 1, "a film of another size replaces the first");
     }
 
@@ -340,10 +340,10 @@ mod tests {
         let said = |seconds: f64, memory_bytes| {
             let statistics =
                 Statistics { elapsed_seconds: seconds, memory_bytes, ..Statistics::default() };
-            inbox.hear(TracerEvent::Statistics(Arc::new(statistics)))
+            inbox.put(TracerEvent::Statistics(Arc::new(statistics)))
         };
         assert_eq!([said(1.0, 5), said(1.0, 7), said(2.0, 7)], [true, false, true], "as they come");
-        assert!(!inbox.hear(TracerEvent::Unknown), "nothing that is known");
+        assert!(!inbox.put(TracerEvent::Unknown), "nothing that is known");
         let mut arrivals = inbox.take_arrivals();
         assert!(
             matches!(arrivals.make_contiguous(), [Arrival::Said(TracerEvent::Statistics(s))]
@@ -357,8 +357,8 @@ mod tests {
     fn gaps_add_up() {
         let inbox = Inbox::default();
         let lost = Gap { batches: 1, paths: u64::MAX, bytes: 3 };
-        inbox.hear(TracerEvent::Gap(lost));
-        inbox.hear(TracerEvent::Gap(lost));
+        inbox.put(TracerEvent::Gap(lost));
+        inbox.put(TracerEvent::Gap(lost));
         let told = gap(&inbox.take_arrivals()).expect("a gap");
         assert_eq!(told.batches, 2, "two gaps");
         assert_eq!(told.paths, u64::MAX, "absurd counts do not overflow");
@@ -368,11 +368,11 @@ mod tests {
     fn a_welcome_makes_everything_before_it_void() {
         let inbox = Inbox::default();
         inbox.push(Arrival::Link(LinkState::Connected));
-        inbox.hear(TracerEvent::Paths(Arc::new(batch(3))));
-        inbox.hear(TracerEvent::Film(tile(0, 32, 8)));
-        inbox.hear(TracerEvent::FocusGap(5));
+        inbox.put(TracerEvent::Paths(Arc::new(batch(3))));
+        inbox.put(TracerEvent::Film(tile(0, 32, 8)));
+        inbox.put(TracerEvent::FocusGap(5));
         let welcome = Box::new(crate::synthetic::welcome());
-        inbox.hear(TracerEvent::Welcome(welcome.clone()));
+        inbox.put(TracerEvent::Welcome(welcome.clone()));
         assert_eq!(inbox.paths(), 0, "paths are of another session");
         let expected =
             [Arrival::Link(LinkState::Connected), Arrival::Said(TracerEvent::Welcome(welcome))];
@@ -385,7 +385,7 @@ mod tests {
         let batch = batch(1);
         let vertices = batch.reader().next().expect("a path").vertices.to_vec();
         let path = FocusPath { vertices, next: 1, ..FocusPath::default() };
-        inbox.hear(TracerEvent::FocusPath(Arc::new(path.clone())));
+        inbox.put(TracerEvent::FocusPath(Arc::new(path.clone())));
         let mut expected = path;
         let mut pushed = 0;
         while pushed < 60_000 {
@@ -398,7 +398,7 @@ mod tests {
                 ..FocusStep::default()
             };
             expected = expected.after(&step).expect("it follows");
-            inbox.hear(TracerEvent::FocusStep(Arc::new(step)));
+            inbox.put(TracerEvent::FocusStep(Arc::new(step)));
         }
         let (mut told, mut bytes) = (0, 0);
         let mut path: Option<FocusPath> = None;

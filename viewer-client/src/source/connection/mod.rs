@@ -264,7 +264,7 @@ impl Connection {
                             self.set_state(LinkState::Connected);
                         }
                         let haste = Haste::of(&event);
-                        if self.inbox.hear(event) {
+                        if self.inbox.put(event) {
                             (self.waker)(haste);
                         }
                     }

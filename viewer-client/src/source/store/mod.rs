@@ -74,7 +74,7 @@ impl Store {
 
     /// Takes every path of a batch.
     pub fn append(&mut self, batch: &PathBatch) {
-        self.note(batch);
+        self.count(batch);
         let mut reader = batch.reader();
         while let Some(path) = reader.next() {
             let full = |page: &Page| !page.has_room(path.vertices.len());
@@ -86,7 +86,7 @@ impl Store {
             let Some(page) = self.pages.back_mut() else { return };
             let class = self.classes.number(path.vertices);
             page.push(&path, self.next_ordinal, class, wanted);
-            self.tone.note(path.header.luminance);
+            self.tone.include(path.header.luminance);
             self.next_ordinal = self.next_ordinal.wrapping_add(1);
             self.held += 1;
         }
@@ -94,18 +94,18 @@ impl Store {
 
     /// Counts a batch that is not kept because the cloud is frozen.
     pub fn skip(&mut self, batch: &PathBatch) {
-        self.note(batch);
+        self.count(batch);
         self.counts.skipped += batch.len() as u64;
     }
 
-    fn note(&mut self, batch: &PathBatch) {
+    fn count(&mut self, batch: &PathBatch) {
         self.counts.batches += 1;
         self.counts.paths += batch.len() as u64;
         self.counts.bytes += batch.byte_len() as u64;
     }
 
     /// Remembers that `paths` paths never came.
-    pub fn note_gap(&mut self, paths: u64) {
+    pub fn count_gap(&mut self, paths: u64) {
         self.counts.gaps += 1;
         self.counts.dropped += paths;
     }
@@ -181,8 +181,8 @@ impl Store {
 
     /// Notes what had come by `time` (seconds), for the rates.
     pub fn measure(&mut self, time: f64) {
-        self.path_rate.note(time, self.counts.paths);
-        self.byte_rate.note(time, self.counts.bytes);
+        self.path_rate.record(time, self.counts.paths);
+        self.byte_rate.record(time, self.counts.bytes);
     }
 
     /// Paths received a second.
