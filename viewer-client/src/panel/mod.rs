@@ -41,7 +41,7 @@ use crate::command::Command;
 use crate::value::{PanelName, Part, WindowSide};
 use crate::world::World;
 use lines::Lines;
-use sides::{Sides, edge, one_side, reveal, reveal_pick};
+use sides::{Sides, Window, edge, one_side, reveal, reveal_pick};
 
 /// A part of the window.
 pub trait Panel: Debug {
@@ -131,8 +131,8 @@ pub fn show(panels: &mut [Placed], ui: &mut Ui, world: &World<'_>, commands: &mu
     let sides = Sides::of(ui, world);
     let mut rects = [None; 2];
     for window_side in WindowSide::ALL {
-        let shown = one_side(ui, (panels, side), (window_side, &sides), world, commands);
-        rects[window_side as usize] = shown;
+        let window = &mut Window { panels: &mut *panels, world, commands: &mut *commands };
+        rects[window_side as usize] = one_side(ui, window, side, window_side, &sides);
     }
     let mut view = ui.available_rect_before_wrap();
     for (slot, panel) in panels.iter_mut() {
@@ -144,7 +144,7 @@ pub fn show(panels: &mut [Placed], ui: &mut Ui, world: &World<'_>, commands: &mu
     // After the view, which would otherwise take the half of each edge that lies on its side.
     for window_side in WindowSide::ALL {
         if let Some(rect) = rects[window_side as usize] {
-            edge(ui, (window_side, rect), &sides, world, commands);
+            edge(ui, window_side, rect, &sides, world, commands);
         }
     }
     let mut over = ui.new_child(UiBuilder::new().max_rect(view));

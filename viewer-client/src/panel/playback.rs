@@ -91,7 +91,7 @@ fn scrubber(ui: &mut Ui, world: &World<'_>, playback: &Playback, commands: &mut 
         commands.push(Command::Play(PlayCommand::To(u32::try_from(there).unwrap_or(u32::MAX))));
     }
     let rate = f64::from(playback.rate());
-    if let Some(rate) = number(ui, world, ("Pace", form("play rate")), rate) {
+    if let Some(rate) = number(ui, world, "Pace", form("play rate"), rate) {
         commands.push(Command::Play(PlayCommand::Rate(rate as f32)));
     }
 }

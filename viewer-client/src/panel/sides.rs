@@ -21,6 +21,14 @@ const READABLE: f32 = 120.0;
 /// How far from the edge of a side it can be dragged, in points.
 const GRIP: f32 = 4.0;
 
+/// What a side is shown with.
+#[derive(Debug)]
+pub(super) struct Window<'a> {
+    pub(super) panels: &'a mut [Placed],
+    pub(super) world: &'a World<'a>,
+    pub(super) commands: &'a mut Vec<Command>,
+}
+
 /// What the sides of the window hold, and how wide they are in this frame.
 #[derive(Debug)]
 pub(super) struct Sides {
@@ -122,10 +130,10 @@ fn show_side_of_opened(ui: &Ui, names: &[Vec<PanelName>; 2]) {
 /// folded to a strip.
 pub(super) fn one_side(
     ui: &mut Ui,
-    (panels, frame): (&mut [Placed], Frame),
-    (side, sides): (WindowSide, &Sides),
-    world: &World<'_>,
-    commands: &mut Vec<Command>,
+    window: &mut Window<'_>,
+    frame: Frame,
+    side: WindowSide,
+    sides: &Sides,
 ) -> Option<Rect> {
     let names = sides.names[side as usize].as_slice();
     if names.is_empty() {
@@ -143,7 +151,7 @@ pub(super) fn one_side(
         return None;
     };
     let panel = panel.frame(frame).exact_size(width);
-    let shown = panel.show(ui, |ui| sections(ui, (panels, names), side, world, commands));
+    let shown = panel.show(ui, |ui| sections(ui, window, names, side));
     let rect = shown.response.rect;
     if ui.input(|input| input.pointer.any_pressed()) && ui.rect_contains_pointer(rect) {
         use_side(ui, side);
@@ -170,7 +178,8 @@ fn strip(ui: &mut Ui, side: WindowSide, names: &[PanelName]) {
 /// The edge of a side, which the user may drag from a little inside and outside of it.
 pub(super) fn edge(
     ui: &Ui,
-    (side, rect): (WindowSide, Rect),
+    side: WindowSide,
+    rect: Rect,
     sides: &Sides,
     world: &World<'_>,
     commands: &mut Vec<Command>,
@@ -222,13 +231,8 @@ fn keep_widths(sides: &Sides, layout: &Settled, commands: &mut Vec<Command>) {
 }
 
 /// The sections of one side, each under its heading.
-fn sections(
-    ui: &mut Ui,
-    (panels, names): (&mut [Placed], &[PanelName]),
-    side: WindowSide,
-    world: &World<'_>,
-    commands: &mut Vec<Command>,
-) {
+fn sections(ui: &mut Ui, window: &mut Window<'_>, names: &[PanelName], side: WindowSide) {
+    let Window { panels, world, commands } = window;
     // To the side as well: rows that do not wrap may be wider than a side in a small window.
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         let width = ui.available_width();

@@ -58,7 +58,8 @@ pub(super) fn setting<G: Group, T: Control>(
 pub(super) fn number(
     ui: &mut Ui,
     world: &World<'_>,
-    (label, form): (&str, &'static Form),
+    label: &str,
+    form: &'static Form,
     value: f64,
 ) -> Option<f64> {
     let range = form.range()?;
@@ -84,7 +85,7 @@ macro_rules! numbers {
     ($($type:ty),+) => {$(
         impl Control for $type {
             fn control(&self, ui: &mut Ui, form: &'static Form, world: &World<'_>) -> Option<Self> {
-                number(ui, world, (form.label, form), self.to_f64()).map(Self::from_f64)
+                number(ui, world, form.label, form, self.to_f64()).map(Self::from_f64)
             }
         }
     )+};

@@ -261,7 +261,7 @@ impl Stage {
         let [width, height] = self.size;
         let encoder = device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
-        let bytes = read_back((device, queue), encoder, self.target.as_image_copy(), 4)?;
+        let bytes = read_back(device, queue, encoder, self.target.as_image_copy(), 4)?;
         image::RgbaImage::from_raw(width, height, bytes).context("the picture has a wrong size")
     }
 }

@@ -136,7 +136,7 @@ fn line(ui: &mut Ui, filter: &mut Filter, negative: bool, context: &Context<'_>)
         let width = (row.x - MORE_WIDTH).max(0.0);
         ui.vertical(|ui| {
             ui.set_width(width);
-            ui.horizontal_wrapped(|ui| parts(ui, (&mut *filter, negative), context, &mut done));
+            ui.horizontal_wrapped(|ui| parts(ui, &mut *filter, negative, context, &mut done));
         });
         done.more = more(ui, filter, context);
     });
@@ -146,7 +146,8 @@ fn line(ui: &mut Ui, filter: &mut Filter, negative: bool, context: &Context<'_>)
 /// What can be chosen of a condition.
 fn parts(
     ui: &mut Ui,
-    (filter, negative): (&mut Filter, bool),
+    filter: &mut Filter,
+    negative: bool,
     context: &Context<'_>,
     done: &mut LineEdit,
 ) {

@@ -179,7 +179,7 @@ impl ExplorerPanel {
             self.rate = None;
         }
         let rate = f64::from(self.rate.unwrap_or(state.rate));
-        if let Some(rate) = number(ui, world, ("Pace", form("explorer play")), rate) {
+        if let Some(rate) = number(ui, world, "Pace", form("explorer play"), rate) {
             let rate = rate as f32;
             self.rate = Some(rate);
             if state.pace == Pace::Playing {

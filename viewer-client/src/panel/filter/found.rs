@@ -31,7 +31,7 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) 
         _ => reply.map(|reply| reply.conditions.as_slice()).unwrap_or_default(),
     };
     if counts.matched == 0 && counts.seen > 0 && !conditions.is_empty() {
-        nothing_found(ui, world, (counts, conditions), commands);
+        nothing_found(ui, world, counts, conditions, commands);
     }
 }
 
@@ -62,14 +62,15 @@ pub(crate) fn energy(counts: &FilterCounts) -> String {
 fn nothing_found(
     ui: &mut Ui,
     world: &World<'_>,
-    (counts, conditions): (&FilterCounts, &[String]),
+    counts: &FilterCounts,
+    conditions: &[String],
     commands: &mut Vec<Command>,
 ) {
     ui.add_space(4.0);
     let busy = theme::busy(ui.visuals().dark_mode);
     ui.label(RichText::new("No path matches").strong().color(busy));
     if let Some(miss) = &counts.nearest {
-        nearest(ui, world, (miss, conditions), commands);
+        nearest(ui, world, miss, conditions, commands);
     }
     ui.horizontal_wrapped(|ui| {
         if !world.settings.filter.is_inverted()
@@ -95,7 +96,8 @@ fn nothing_found(
 fn nearest(
     ui: &mut Ui,
     world: &World<'_>,
-    (miss, conditions): (&NearestMiss, &[String]),
+    miss: &NearestMiss,
+    conditions: &[String],
     commands: &mut Vec<Command>,
 ) {
     ui.add(Label::new(explained(miss, conditions, &world.settings.filter)).wrap());

@@ -36,7 +36,8 @@ impl Glimpse {
     pub(super) fn show(
         &mut self,
         ui: &Ui,
-        (response, projector): (&Response, &Projector),
+        response: &Response,
+        projector: &Projector,
         world: &World<'_>,
     ) {
         let busy = ui.input(|input| input.pointer.any_down() || input.smooth_scroll_delta.y != 0.0);
@@ -104,7 +105,7 @@ fn path_at(projector: &Projector, place: Pos2, world: &World<'_>) -> Option<Sele
         mesh: world.model.map(|model| &model.mesh),
         newest: (world.settings.cloud.shown as usize).min(MOST_PATHS),
     };
-    sight.paths(projector.aim(place, TOLERANCE)).into_iter().next()
+    sight.paths(projector.pointer(place, TOLERANCE)).into_iter().next()
 }
 
 fn paint(painter: &Painter, projector: &Projector, found: &Selection) {

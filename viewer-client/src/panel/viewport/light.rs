@@ -29,12 +29,13 @@ fn ball(world: &World<'_>) -> Option<Ball> {
 /// Takes the user's hand; true when it is on the light.
 pub(super) fn interact(
     ui: &Ui,
-    hand: (&Response, &Projector),
+    response: &Response,
+    projector: &Projector,
     world: &World<'_>,
     commands: &mut Vec<Command>,
 ) -> bool {
     let Some(ball) = ball(world) else { return false };
-    let Some(moved) = HOLD.pull(ui, hand, ball) else { return false };
+    let Some(moved) = HOLD.pull(ui, response, projector, ball) else { return false };
     let place = world.names().world(moved.centre.into()).to_array();
     commands.push(Command::Scene(SceneCommand::Light(Light::At(place))));
     true

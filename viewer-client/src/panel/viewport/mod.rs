@@ -37,16 +37,15 @@ impl Panel for Viewport {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Viewport"));
         let projector = Projector::new(world.camera.lens(rect.aspect_ratio()), rect);
-        let hand = (&response, &projector);
-        let held = selectors::interact(ui, hand, world, commands)
-            || light::interact(ui, hand, world, commands);
+        let held = selectors::interact(ui, &response, &projector, world, commands)
+            || light::interact(ui, &response, &projector, world, commands);
         if !held {
             gesture::read(ui, &response, world, commands);
             if response.clicked()
                 && let Some(place) = response.interact_pointer_pos()
             {
-                let aim = projector.aim(place, TOLERANCE);
-                commands.push(Command::Path(PathCommand::Pick(aim)));
+                let pointer = projector.pointer(place, TOLERANCE);
+                commands.push(Command::Path(PathCommand::Pick(pointer)));
                 reveal_pick(ui);
             }
         }
@@ -58,7 +57,7 @@ impl Panel for Viewport {
         ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, callback));
         overlay::paint(ui, &projector, rect, world);
         if world.model.is_some() {
-            self.glimpse.show(ui, (&response, &projector), world);
+            self.glimpse.show(ui, &response, &projector, world);
         }
     }
 }

@@ -54,7 +54,7 @@ impl Projector {
     }
 
     /// What the user points at, with a tolerance in screen points.
-    pub(super) fn aim(&self, at: Pos2, tolerance: f32) -> Pointer {
+    pub(super) fn pointer(&self, at: Pos2, tolerance: f32) -> Pointer {
         let offset = (at - self.rect.center()) / self.scale();
         Pointer { at: [offset.x, -offset.y], reach: tolerance / self.scale() }
     }
