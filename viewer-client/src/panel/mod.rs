@@ -68,7 +68,7 @@ pub enum Slot {
 pub type Placed = (Slot, Box<dyn Panel>);
 
 /// Every section.
-pub static SECTIONS: [About; 9] = [
+pub static SECTIONS: &[About] = &[
     About::of::<cloud::Cloud>(),
     About::of::<filter::FilterPanel>(),
     About::of::<scene::Scene>(),

@@ -151,7 +151,8 @@ fn offered(window: &mut Window) -> Vec<String> {
     let seen = viewer.source.suited(&viewer.settings);
     let parts = PanelName::ALL.map(Part::Panel).into_iter().chain([Part::Status]);
     found.extend(parts.map(|part| panel::text_of(&viewer.world(&seen), part)));
-    let uses = panel::SECTIONS.map(|about| (about.applies)(&viewer.world(&seen)));
+    let applies = |about: &panel::About| (about.applies)(&viewer.world(&seen));
+    let uses: Vec<bool> = panel::SECTIONS.iter().map(applies).collect();
     found.push(format!("{uses:?}"));
     found.push(format!("{:?}", viewer.settings));
     found.push(format!("{seen:?}"));
