@@ -48,7 +48,7 @@ const RULES: &[Rule] = &[
     },
     Rule {
         files: &["tracer-server/src", "viewer-client/src"],
-        except: &["viewer-client/src/habits"],
+        except: &[],
         never: &[
             "File::create",
             "File::options",

@@ -73,13 +73,20 @@ fn keep_aside(file: &Path) -> io::Result<PathBuf> {
         number += 1;
         place = with_ending(file, &format!("damaged-{number}"));
     }
-    fs::copy(file, &place)?;
+    host::file::write(&place, &fs::read(file)?).map_err(io::Error::other)?;
     Ok(place)
 }
 
 /// Locks a file, which is made where it is missing, until the answer is dropped.
 fn lock(file: &Path) -> io::Result<File> {
-    let lock = File::options().create(true).append(true).open(file)?;
+    // Never replaced: who holds a lock holds it on this file, and not on its name.
+    if !file.exists()
+        && let Err(error) = host::file::write_private(file, b"")
+        && !file.exists()
+    {
+        return Err(io::Error::other(error));
+    }
+    let lock = File::open(file)?;
     let start = Instant::now();
     loop {
         match lock.try_lock() {
