@@ -5,6 +5,7 @@
 mod backoff;
 mod inbox;
 mod peer;
+mod probe;
 mod session;
 mod tls;
 
