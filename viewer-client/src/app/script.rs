@@ -45,9 +45,24 @@ pub fn read(file: &Path) -> Result<Vec<Command>, ScriptError> {
 }
 
 fn parse(text: &str) -> Result<Vec<Command>, (usize, CommandError)> {
-    let uncommented = |line: &str| line.split('#').next().unwrap_or("").trim().to_owned();
+    let text = text.trim_start_matches('\u{feff}');
     let lines = text.lines().map(uncommented).zip(1..).filter(|(line, _)| !line.is_empty());
     lines.map(|(line, number)| line.parse().map_err(|error| (number, error))).collect()
+}
+
+/// A line without its comment: `#` begins one at the start of a word, unless it stands in quotes, as
+/// in the name of a material.
+fn uncommented(line: &str) -> &str {
+    let (mut is_quoted, mut is_escaped, mut starts_word) = (false, false, true);
+    let begins_comment = |(_, sign): &(usize, char)| {
+        let begins = *sign == '#' && starts_word && !is_quoted;
+        is_quoted ^= *sign == '"' && !is_escaped;
+        is_escaped = *sign == '\\' && !is_escaped;
+        starts_word = sign.is_whitespace();
+        begins
+    };
+    let end = line.char_indices().find(begins_comment).map_or(line.len(), |(at, _)| at);
+    line[..end].trim()
 }
 
 #[cfg(test)]
@@ -59,6 +74,24 @@ mod tests {
         let commands = parse("# a view\n\ncamera frame # all of it\n  quit\n").expect("a script");
         let texts: Vec<String> = commands.iter().map(ToString::to_string).collect();
         assert_eq!(texts, ["camera frame", "quit"], "two commands");
+    }
+
+    #[test]
+    fn names_may_hold_what_begins_a_comment() {
+        for (line, expected) in [
+            (
+                r#"filter set any on material "Rough Grey #1" # the wall"#,
+                r#"filter set any on material "Rough Grey #1""#,
+            ),
+            (
+                r#"filter set any on material "O'Brien \"glass\" #2"#,
+                r#"filter set any on material "O'Brien \"glass\" #2"#,
+            ),
+            ("image save a#1.exr #later", "image save a#1.exr"),
+            ("# all", ""),
+        ] {
+            assert_eq!(uncommented(line), expected);
+        }
     }
 
     #[test]
