@@ -318,13 +318,14 @@ fn a_file_is_read_in_any_encoding_and_refused_by_its_first_fault() {
     let file = folder.path().join("paths.txt");
     let marked: Vec<u8> =
         format!("\u{feff}{RECORD}").encode_utf16().flat_map(u16::to_le_bytes).collect();
-    std::fs::write(&file, marked).expect("writable");
+    host::file::write(&file, &marked).expect("writable");
     let dump = read(&file).expect("a dump");
     assert_eq!(dump, parse(RECORD).expect("a record"));
-    std::fs::write(&file, RECORD.replace("p = [4, 4, 0]", "p = [4, nan, 0]")).expect("writable");
+    let faulty = RECORD.replace("p = [4, 4, 0]", "p = [4, nan, 0]");
+    host::file::write(&file, faulty.as_bytes()).expect("writable");
     let error = read(&file).expect_err("nothing is left").to_string();
     assert!(error.contains("paths.txt, line 52: "), "{error}");
-    std::fs::write(&file, b"\xff\xfe\x00\xd8\x00").expect("writable");
+    host::file::write(&file, b"\xff\xfe\x00\xd8\x00").expect("writable");
     assert!(matches!(read(&file), Err(DumpError::Empty(_))), "half a character");
 }
 
