@@ -12,6 +12,7 @@ mod event;
 mod filter;
 mod id;
 mod mesh;
+mod message;
 mod metric;
 mod session;
 mod steering;
@@ -33,6 +34,7 @@ pub use filter::{
 };
 pub use id::{ChainId, MaterialId, NoPathId, PathId, StrategyId};
 pub use mesh::{MaterialInfo, SceneFrame, SceneMesh, TexturePreview};
+pub use message::TracerEvent;
 pub use metric::{Floor, known, mean_of_smallest, mean_ratio, relative_errors, relative_mse};
 pub use session::{
     ChainTotals, FailureCount, FilmFrame, FilmTile, FilterReply, Gap, Queue, Role, Statistics,

@@ -1,10 +1,13 @@
 //! Filters in the daemon as it ships: exact paths, exact counts, changed while the paths stream.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use common::{CompiledFilter, Filter, FilterReply, FilterScene, Gap, PathBatch, Role, Statistics};
+use common::{
+    CompiledFilter, Filter, FilterReply, FilterScene, Gap, PathBatch, Role, Statistics, TracerEvent,
+};
 use proto::v1::tracer_client::TracerClient;
-use proto::{Hello, ProtocolVersion, SceneAssembler, TracerEvent, ViewerEvent, WantedFilter, v1};
+use proto::{Hello, ProtocolVersion, SceneAssembler, ViewerEvent, WantedFilter, v1};
 use tokio::sync::mpsc;
 use tokio_stream::wrappers::ReceiverStream;
 use tonic::transport::Channel;
@@ -75,8 +78,8 @@ impl Viewer {
         &mut self,
         revision: u32,
         mut content: impl FnMut(&PathBatch) -> bool,
-    ) -> Statistics {
-        let mut statistics = Statistics::default();
+    ) -> Arc<Statistics> {
+        let mut statistics = Arc::<Statistics>::default();
         let mut is_content = false;
         // Batches that were ready when the filter changed come first.
         while !(is_content && statistics.filter.seen > 0) {
@@ -172,7 +175,7 @@ async fn a_filter_changes_while_paths_stream_and_counts_stay_exact() {
                 paths > 100 && seen > matched
             })
             .await;
-        let counts = statistics.filter;
+        let counts = statistics.filter.clone();
         assert!(seen > matched && matched > 100, "some match, some do not: {matched} of {seen}");
         let share = counts.matched_steps / counts.seen_steps;
         assert!((counts.energy_share - share).abs() < 1e-12, "{counts:?}");
@@ -245,7 +248,7 @@ async fn what_is_no_filter_is_refused_with_its_place_and_harms_nothing() {
     let error = reply.error.expect("no number");
     assert_eq!((reply.revision, error.span), (2, 9..14), "{}", error.message);
     let statistics = viewer.watch(1, |batch| !batch.is_empty()).await;
-    let counts = statistics.filter;
+    let counts = statistics.filter.clone();
     assert!(
         0 < counts.matched && counts.matched < counts.seen,
         "the first is in force: {counts:?}"

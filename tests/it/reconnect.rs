@@ -10,8 +10,9 @@ use tracer_server::scene::Scene;
 use tracer_server::scene::load::load;
 use viewer_client::app::Viewer;
 use viewer_client::command::Command;
+use viewer_client::source::Source;
 use viewer_client::source::connection::{Link, Peer};
-use viewer_client::source::status::{LinkState, Status};
+use viewer_client::source::status::LinkState;
 
 /// Nothing here takes that long; what does hangs.
 const PATIENCE: Duration = Duration::from_mins(1);
@@ -47,7 +48,7 @@ fn until(what: &str, viewer: &mut Viewer, happened: impl Fn(&Viewer) -> bool) {
 fn a_viewer_survives_its_daemon() {
     let first = daemon(SocketAddr::from(([127, 0, 0, 1], 0)));
     let address = first.address();
-    let mut viewer = Viewer::new(Status::new(address.to_string(), false));
+    let mut viewer = Viewer::new(Source::daemon(address.to_string(), false));
     let link = Link::start(Peer::open(address.to_string()), Box::new(|_| {})).expect("a thread");
     viewer.set_link(link);
     until("scene, image and paths", &mut viewer, |v| v.is_settled() && v.paths_received() > 100);
@@ -76,7 +77,7 @@ fn a_viewer_survives_its_daemon() {
 
 #[test]
 fn a_viewer_without_a_daemon_says_why_and_goes_on_trying() {
-    let mut viewer = Viewer::new(Status::new("127.0.0.1:1".to_owned(), false));
+    let mut viewer = Viewer::new(Source::daemon("127.0.0.1:1".to_owned(), false));
     let link =
         Link::start(Peer::open("127.0.0.1:1".to_owned()), Box::new(|_| {})).expect("a thread");
     viewer.set_link(link);

@@ -1,8 +1,8 @@
 //! Who gets in, and who does not.
 
+use common::TracerEvent;
 use std::time::Duration;
 
-use proto::TracerEvent;
 use tracer_server::hub::HubLimits;
 use tracer_server::service::{Access, Certificate, Security, Server, Token};
 use viewer_client::source::connection::{Bearer, Greeting, Peer, Session, SessionError, Trust};

@@ -9,9 +9,9 @@ use std::time::{Duration, Instant};
 
 use common::{
     ChainCommand, ExplorerCommand, FocusOutcome, FocusPath, Notice, Order, Role, Seed, SkipTo,
-    StrategyId,
+    StrategyId, TracerEvent,
 };
-use proto::{NumberedOrder, TracerEvent, ViewerEvent, WantedFilter};
+use proto::{NumberedOrder, ViewerEvent, WantedFilter};
 use tokio::task::JoinSet;
 use tokio_util::task::TaskTracker;
 use viewer_client::source::connection::{Greeting, Peer, Session};
@@ -39,7 +39,7 @@ impl Follower {
         match event {
             TracerEvent::FocusPath(path) => {
                 self.of_epoch = (path.header.id.epoch, 0, 0);
-                self.path = Some(path.clone());
+                self.path = Some(FocusPath::clone(path));
             }
             TracerEvent::FocusStep(step) => {
                 let path = self.path.take().expect("a whole path comes first");

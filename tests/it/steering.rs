@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use common::{
     ChainCommand, Gaze, LeaseEvent, LeaseNotice, LeaseRequest, Notice, Order, OrderReply, Presence,
-    Role,
+    Role, TracerEvent,
 };
-use proto::{NumberedOrder, TracerEvent, ViewerEvent, WantedFilter};
+use proto::{NumberedOrder, ViewerEvent, WantedFilter};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::task::JoinSet;
 use tokio_util::sync::CancellationToken;

@@ -8,7 +8,7 @@ use common::{
 };
 
 use super::focus::{from_point, to_point};
-use super::session::role;
+use super::role::role;
 use super::{WireError, check};
 use crate::v1;
 use crate::v1::order::What;
@@ -79,7 +79,9 @@ impl TryFrom<v1::Order> for NumberedOrder {
     }
 }
 
+/// Every order is named: a new one is understood before anything is made of it.
 fn order(wire: What) -> Result<Order, WireError> {
+    let explorer = Order::Explorer;
     Ok(match wire {
         What::LeaseAsk(_) => Order::Lease(LeaseRequest::Ask),
         What::LeaseRelease(_) => Order::Lease(LeaseRequest::Release),
@@ -96,35 +98,28 @@ fn order(wire: What) -> Result<Order, WireError> {
             let precision = check::between("order.chains_precision", precision, least, most)?;
             Order::Chains(ChainCommand::SetPrecision(precision))
         }
-        other => Order::Explorer(explorer_command(other)?),
-    })
-}
-
-/// What is left of an order that concerns neither the lease nor the chains.
-fn explorer_command(wire: What) -> Result<ExplorerCommand, WireError> {
-    Ok(match wire {
         What::ExplorerSeed(v1::ExplorerSeed { path }) => {
-            ExplorerCommand::Seed(path.map_or(Seed::Newest, |id| Seed::Path(id.into())))
+            explorer(ExplorerCommand::Seed(path.map_or(Seed::Newest, |id| Seed::Path(id.into()))))
         }
         What::ExplorerPlay(rate) => {
             let (least, most) = (MIN_RATE.into(), MAX_RATE.into());
             check::between("order.explorer_play", rate.into(), least, most)?;
-            ExplorerCommand::Play(rate)
+            explorer(ExplorerCommand::Play(rate))
         }
+        What::ExplorerPause(_) => explorer(ExplorerCommand::Pause),
         What::ExplorerStep(count) => {
-            ExplorerCommand::Step(check::within("order.explorer_step", count, 1, MAX_STEPS)?)
+            let count = check::within("order.explorer_step", count, 1, MAX_STEPS)?;
+            explorer(ExplorerCommand::Step(count))
         }
-        What::ExplorerSkipToAcceptance(_) => ExplorerCommand::Skip(SkipTo::Acceptance),
+        What::ExplorerSkipToAcceptance(_) => explorer(ExplorerCommand::Skip(SkipTo::Acceptance)),
         What::ExplorerSkipToStrategy(strategy) => {
-            ExplorerCommand::Skip(SkipTo::Strategy(strategy_id(strategy)?))
+            explorer(ExplorerCommand::Skip(SkipTo::Strategy(strategy_id(strategy)?)))
         }
-        What::ExplorerAllow(bits) => ExplorerCommand::Allow(StrategySet(bits)),
-        What::ExplorerFan(v1::ExplorerFan { strategy, count }) => ExplorerCommand::Fan {
+        What::ExplorerAllow(bits) => explorer(ExplorerCommand::Allow(StrategySet(bits))),
+        What::ExplorerFan(v1::ExplorerFan { strategy, count }) => explorer(ExplorerCommand::Fan {
             strategy: strategy_id(strategy)?,
             count: check::within("order.explorer_fan", count, 1, MAX_FAN)?,
-        },
-        // The rest was taken out before.
-        _ => ExplorerCommand::Pause,
+        }),
     })
 }
 
@@ -188,7 +183,9 @@ impl TryFrom<v1::LeaseNotice> for LeaseNotice {
             Ok(Event::Granted) => LeaseEvent::Granted,
             Ok(Event::Lost) => LeaseEvent::Lost,
             Ok(Event::Asked) => LeaseEvent::Asked,
-            _ => return Err(WireError::Missing("lease_notice.event")),
+            Ok(Event::Unspecified) | Err(_) => {
+                return Err(WireError::Missing("lease_notice.event"));
+            }
         };
         Ok(Self { event, by: author(wire.by)? })
     }
@@ -282,7 +279,8 @@ impl TryFrom<v1::ExplorerState> for ExplorerState {
             pace: match Wire::try_from(wire.pace) {
                 Ok(Wire::Playing) => Pace::Playing,
                 Ok(Wire::Skipping) => Pace::Skipping,
-                _ => Pace::Paused,
+                // A pace of a later version is none of those in which steps come.
+                Ok(Wire::Paused | Wire::Unspecified) | Err(_) => Pace::Paused,
             },
             rate: wire.rate,
             allowed: StrategySet(wire.allowed),

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use common::{Filter, FocusPath, SceneMesh};
+use common::{Filter, FocusPath, SceneMesh, TracerEvent};
 use prost::Message as _;
-use proto::{SceneAssembler, TracerEvent, ViewerEvent, scene_chunks, v1};
+use proto::{SceneAssembler, ViewerEvent, scene_chunks, v1};
 use tracer_server::scene::Scene;
 use tracer_server::scene::builtin::BUILTINS;
 use tracer_server::scene::load::load;

@@ -5,10 +5,11 @@ use common::{
     ExplorerState, FailureCount, FilmTile, FilterCounts, FilterError, FilterObject, FilterReply,
     FilterScene, FocusOutcome, FocusPath, FocusStep, Gap, Gaze, LeaseEvent, LeaseNotice,
     LeaseRequest, Notice, Order, OrderReply, PathHeader, PathId, Presence, Role, SceneFrame, Seed,
-    SkipTo, Statistics, StrategyId, StrategySet, StrategyStatistics, VertexKind, VertexRecord,
+    SkipTo, Statistics, StrategyId, StrategySet, StrategyStatistics, TracerEvent, VertexKind,
+    VertexRecord,
 };
 use glam::DVec3;
-use proto::{Hello, NumberedOrder, ProtocolVersion, TracerEvent, ViewerEvent, WantedFilter};
+use proto::{Hello, NumberedOrder, ProtocolVersion, ViewerEvent, WantedFilter};
 
 use crate::stream::fixture::{batch, path, session_info};
 
@@ -98,15 +99,15 @@ pub(super) fn tracer_events() -> Vec<TracerEvent> {
         ..FocusStep::default()
     };
     [
-        TracerEvent::Welcome(session_info().welcome),
-        TracerEvent::Paths(batch(1500).0),
+        TracerEvent::Welcome(Box::new(session_info().welcome)),
+        TracerEvent::Paths(batch(1500).0.into()),
         TracerEvent::Film(tile.clone()),
         TracerEvent::ExplorerFilm(tile),
-        TracerEvent::Statistics(statistics()),
+        TracerEvent::Statistics(statistics().into()),
         TracerEvent::Gap(Gap { batches: 1, paths: 2, bytes: 3 }),
         TracerEvent::FilterReply(reply),
-        TracerEvent::FocusPath(FocusPath { header, vertices: path(3, 5), next: 9 }),
-        TracerEvent::FocusStep(step),
+        TracerEvent::FocusPath(FocusPath { header, vertices: path(3, 5), next: 9 }.into()),
+        TracerEvent::FocusStep(step.into()),
         TracerEvent::FocusGap(7),
         TracerEvent::Goodbye("over".to_owned()),
     ]

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use common::{
     CompiledFilter, DetailReply, Filter, FilterError, FilterReply, FilterScene, Notice, Order,
-    OrderReply, PathId, Role, Welcome,
+    OrderReply, PathId, Role, TracerEvent, Welcome,
 };
-use proto::v1::{self, TracerMessage, ViewerMessage, tracer_message::Kind};
-use proto::{Hello, NumberedOrder, TracerEvent, ViewerEvent, WantedFilter, WireError};
+use proto::v1::{TracerMessage, ViewerMessage};
+use proto::{Hello, NumberedOrder, ViewerEvent, WantedFilter, WireError};
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep_until};
 use tokio_util::sync::CancellationToken;
@@ -17,7 +17,7 @@ use tonic::{Status, Streaming};
 use super::outbound::Sender;
 use super::room::{Entry, Room};
 use super::{FILTER_INTERVAL, HELLO_TIMEOUT, SHUTTING_DOWN};
-use crate::hub::{Delivery, Subscription};
+use crate::hub::Subscription;
 use crate::steering::{Envelope, Steering};
 
 /// Waits for the hello, which must come first and soon.
@@ -177,7 +177,7 @@ impl Session {
         mut inbound: Streaming<ViewerMessage>,
         messages: &mpsc::Sender<TracerMessage>,
     ) -> End {
-        let welcome = TracerMessage::from(&TracerEvent::Welcome(welcome));
+        let welcome = TracerMessage::from(&TracerEvent::Welcome(Box::new(welcome)));
         // The channel is empty: this does not wait.
         if messages.send(welcome).await.is_err() {
             return End::Left("it hung up".to_owned());
@@ -317,21 +317,10 @@ impl Session {
         let Ok(room) = messages.reserve().await else {
             return Some(End::Left("it hung up".to_owned()));
         };
-        let kind = match self.subscription.next().await {
-            Delivery::Closed(reason) => return Some(End::Dismissed(reason)),
-            Delivery::Paths(batch) => Kind::PathBatch((&*batch).into()),
-            Delivery::Film(tile) => Kind::FilmTile((&tile).into()),
-            Delivery::Statistics(statistics) => Kind::Statistics((&statistics).into()),
-            Delivery::Gap(gap) => Kind::Gap(gap.into()),
-            Delivery::FilterReply(reply) => Kind::FilterReply((&reply).into()),
-            Delivery::Notice(notice) => (&notice).into(),
-            Delivery::FocusPath(path) => Kind::FocusPath((&*path).into()),
-            Delivery::FocusStep(step) => Kind::FocusStep((&*step).into()),
-            Delivery::FocusGap(steps) => Kind::FocusGap(v1::FocusGap { steps }),
-            Delivery::ExplorerFilm(tile) => Kind::ExplorerFilm((&tile).into()),
-            Delivery::SnapshotEnd => Kind::SnapshotEnd(v1::SnapshotEnd {}),
-        };
-        room.send(TracerMessage { kind: Some(kind) });
+        match self.subscription.next().await {
+            TracerEvent::Goodbye(reason) => return Some(End::Dismissed(reason)),
+            event => room.send(TracerMessage::from(&event)),
+        }
         None
     }
 }

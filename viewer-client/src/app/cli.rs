@@ -59,7 +59,7 @@ pub struct ViewArgs {
     /// HOST:PORT of a running daemon, a link to a view of one (lvis://...), or a file of paths as
     /// Mitsuba 0.6 prints them; without any, a daemon is started inside this program.
     #[arg(value_name = "ADDR|FILE", value_parser = source)]
-    pub source: Option<Source>,
+    pub source: Option<Target>,
     /// How a daemon elsewhere is trusted.
     #[command(flatten)]
     pub trust: TrustArgs,
@@ -91,7 +91,7 @@ pub struct ViewArgs {
 
 /// Where paths come from.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum Target {
     /// HOST:PORT of a daemon, or a link to a view of one.
     Daemon(String),
     /// A file of paths.
@@ -204,9 +204,9 @@ fn long_help() -> String {
 /// Endings of scene files.
 const SCENES: [&str; 3] = ["toml", "xml", "obj"];
 
-fn source(text: &str) -> Result<Source, String> {
+fn source(text: &str) -> Result<Target, String> {
     if text.starts_with(share::SCHEME) {
-        return address_or_link(text).map(Source::Daemon);
+        return address_or_link(text).map(Target::Daemon);
     }
     let path = Path::new(text);
     if path.is_dir() {
@@ -219,7 +219,7 @@ fn source(text: &str) -> Result<Source, String> {
         return if SCENES.iter().any(|scene| ending.eq_ignore_ascii_case(scene)) {
             Err(format!("this is a scene, and no file of paths; open it with `--scene {text}`"))
         } else {
-            Ok(Source::File(path.to_owned()))
+            Ok(Target::File(path.to_owned()))
         };
     }
     // Addresses have a colon, and names of scenes have none.
@@ -229,7 +229,7 @@ fn source(text: &str) -> Result<Source, String> {
         format!("; a scene, built in or a file, is opened with `--scene {text}`")
     };
     let no_file = |complaint| format!("there is no such file; for a daemon, {complaint}{scene}");
-    address(text).map(Source::Daemon).map_err(no_file)
+    address(text).map(Target::Daemon).map_err(no_file)
 }
 
 fn address(text: &str) -> Result<String, String> {
@@ -333,7 +333,7 @@ mod tests {
             assert!(said.contains(part) && !said.contains(other), "`{text}`: {said}");
         }
         let link = source("lvis://127.0.0.1:5#camera%20frame");
-        assert!(matches!(link, Ok(Source::Daemon(_))), "{link:?}");
+        assert!(matches!(link, Ok(Target::Daemon(_))), "{link:?}");
     }
 
     #[test]

@@ -8,18 +8,17 @@ use std::sync::mpsc::{Receiver, sync_channel};
 
 use egui::{Color32, ColorImage};
 
+use super::background::{BackgroundTasks, Outcome, TaskResult};
 use crate::habits::Habits;
-use crate::imaging::background::{Errand, Outcome};
-use crate::imaging::view::Darkroom;
+use crate::imaging::saved_text;
 use crate::source::connection::{Link, Peer};
-use crate::source::status::Status;
 
 /// Makes connections that wake the window.
 pub type Connect = Box<dyn Fn(Peer) -> io::Result<Link>>;
 
 /// What is asked of the desktop, and what it remembers.
 #[derive(Default)]
-pub struct Desk {
+pub struct Desktop {
     /// What the viewer remembers from one day to the next.
     pub habits: Habits,
     /// How to connect elsewhere; absent without a window.
@@ -33,13 +32,13 @@ pub struct Desk {
     awaited: Option<(Receiver<Arc<ColorImage>>, PathBuf)>,
 }
 
-impl fmt::Debug for Desk {
+impl fmt::Debug for Desktop {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Desk").field("habits", &self.habits).finish_non_exhaustive()
+        f.debug_struct("Desktop").field("habits", &self.habits).finish_non_exhaustive()
     }
 }
 
-impl Desk {
+impl Desktop {
     /// Of a program with a daemon inside at `home`, HOST:PORT, or of one without.
     pub fn new(home: Option<String>) -> Self {
         Self { home, ..Self::default() }
@@ -55,8 +54,8 @@ impl Desk {
         self.wanted = Some(PathBuf::from(file));
     }
 
-    /// Does what was asked for; once a frame.
-    pub fn work(&mut self, ctx: &egui::Context, darkroom: &mut Darkroom, status: &mut Status) {
+    /// Does what was asked for; once a frame. The answer tells why something cannot begin.
+    pub fn work(&mut self, ctx: &egui::Context, tasks: &mut BackgroundTasks) -> Result<(), String> {
         if let Some(text) = self.copied.take() {
             ctx.copy_text(text);
         }
@@ -71,14 +70,9 @@ impl Desk {
             self.awaited = Some((receiver, file));
         }
         let arrived = self.awaited.as_ref().and_then(|(receiver, _)| receiver.try_recv().ok());
-        let Some((image, (_, file))) =
-            arrived.and_then(|image| Some((image, self.awaited.take()?)))
-        else {
-            return;
-        };
-        let started = darkroom.run(move || write(&image, &file));
-        if let Err(problem) = started {
-            status.say(Err(problem));
+        match arrived.and_then(|image| Some((image, self.awaited.take()?))) {
+            Some((image, (_, file))) => tasks.start(move || write(&image, &file)),
+            None => Ok(()),
         }
     }
 }
@@ -89,6 +83,6 @@ fn write(image: &ColorImage, file: &std::path::Path) -> Outcome {
     let png = image::RgbaImage::from_raw(width, height, bytes)
         .ok_or_else(|| "The window has an odd size.".to_owned())?;
     png.save_with_format(file, image::ImageFormat::Png)
-        .map(|()| Errand::saved(file))
+        .map(|()| TaskResult::Done(saved_text(file)))
         .map_err(|error| format!("{} cannot be written: {error}", file.display()))
 }

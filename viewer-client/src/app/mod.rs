@@ -1,5 +1,6 @@
 //! The program: owns all that there is, and runs in a window, into a file or as text.
 
+pub mod background;
 pub mod bench;
 pub mod cli;
 pub mod desktop;

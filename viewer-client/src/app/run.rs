@@ -7,12 +7,11 @@ use anyhow::Context as _;
 use thiserror::Error;
 
 use crate::app::Viewer;
-use crate::app::cli::{Action, Cli, Source, ViewArgs};
+use crate::app::cli::{Action, Cli, Target, ViewArgs};
 use crate::app::headless::Wait;
 use crate::app::{bench, headless, script, share, watch, window};
 use crate::source::connection::Peer;
-use crate::source::status::Status;
-use crate::source::{dump, embedded};
+use crate::source::{Source, dump, embedded};
 
 /// A picture is taken after this long when nothing else is asked for.
 const DEFAULT_WAIT: Duration = Duration::from_secs(5);
@@ -33,8 +32,8 @@ pub fn run(cli: Cli) -> anyhow::Result<()> {
 
 fn view(args: &ViewArgs) -> anyhow::Result<()> {
     let text = match &args.source {
-        Some(Source::Daemon(text)) => Some(text.as_str()),
-        Some(Source::File(_)) | None => None,
+        Some(Target::Daemon(text)) => Some(text.as_str()),
+        Some(Target::File(_)) | None => None,
     };
     let link = text.filter(|text| text.starts_with(share::SCHEME));
     let shared = link.map(share::read).transpose()?;
@@ -56,11 +55,11 @@ fn view(args: &ViewArgs) -> anyhow::Result<()> {
             (Some(Peer::open(daemon.address().to_string())), Some(daemon))
         }
     };
-    let mut viewer = if let Some(Source::File(file)) = &args.source {
+    let mut viewer = if let Some(Target::File(file)) = &args.source {
         open(file, args.surfaces.as_deref())?
     } else {
         let address = peer.as_ref().map(|peer| peer.address.clone()).unwrap_or_default();
-        Viewer::new(Status::new(address, daemon.is_some()))
+        Viewer::new(Source::daemon(address, daemon.is_some()))
     };
     if let Some(file) = &args.screenshot_to {
         let wait = match (args.wait_paths, args.wait) {
@@ -85,7 +84,5 @@ fn open(file: &Path, surfaces: Option<&str>) -> anyhow::Result<Viewer> {
     }
     let name =
         file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    let mut viewer = Viewer::new(Status::new(name.clone(), false));
-    viewer.open_dump(&name, stage);
-    Ok(viewer)
+    Ok(Viewer::new(Source::file(&name, stage)))
 }

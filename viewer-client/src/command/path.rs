@@ -6,13 +6,13 @@ use common::{Event, MAX_VERTICES, PathHeader, StrategyId, VertexKind, VertexReco
 
 use super::Form;
 use super::words::{CommandError, Words};
-use crate::draw::pick::Aim;
+use crate::value::Pointer;
 
 /// What may be done with a path.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PathCommand {
     /// Selects the path under the cursor; again, the next one there.
-    Pick(Aim),
+    Pick(Pointer),
     /// Selects the path at which a chain stayed longest, or the next in that order.
     Stay(u8),
     /// Selects this path, whether or not it is among those that are held.
@@ -61,7 +61,7 @@ pub(super) const FORMS: &[Form] = &[
 impl fmt::Display for PathCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Pick(Aim { at: [x, y], reach }) => write!(f, "pick {x} {y} {reach}"),
+            Self::Pick(Pointer { at: [x, y], reach }) => write!(f, "pick {x} {y} {reach}"),
             Self::Stay(rank) => write!(f, "stay {rank}"),
             Self::Show(header, vertices) => show(f, header, vertices),
             Self::Explored => write!(f, "explored"),
@@ -132,7 +132,7 @@ fn read_vertex(words: &mut Words<'_>) -> Result<VertexRecord, CommandError> {
 pub(super) fn parse(words: &mut Words<'_>) -> Result<PathCommand, CommandError> {
     const TANGENT: std::ops::RangeInclusive<f32> = -100.0..=100.0;
     Ok(match words.next("path command")? {
-        "pick" => PathCommand::Pick(Aim {
+        "pick" => PathCommand::Pick(Pointer {
             at: [words.number("RIGHT", TANGENT)?, words.number("UP", TANGENT)?],
             reach: words.number("REACH", 0.0..=1.0)?,
         }),

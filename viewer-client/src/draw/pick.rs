@@ -7,30 +7,10 @@ use crate::camera::{Lens, NEAR};
 use crate::settings::SceneSettings;
 use crate::source::selection::Selection;
 use crate::source::store::Store;
-use crate::value::Bounds;
+use crate::value::{Bounds, Pointer};
 
 /// Paths that one click finds at most; more than anybody clicks through.
 const MOST_HITS: usize = 64;
-
-/// Where the user points, and how far off a path may lie.
-///
-/// All three are tangents of angles from the view direction, so that neither the size nor the shape
-/// of the window matters.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Aim {
-    /// To the right and upwards.
-    pub at: [f32; 2],
-    /// How far off, in any direction.
-    pub reach: f32,
-}
-
-impl Aim {
-    /// True when the user points at the same thing, as far as a hand can.
-    pub fn is_near(self, other: Self) -> bool {
-        let off = Vec2::from(self.at).distance(Vec2::from(other.at));
-        off <= 0.5 * self.reach.max(other.reach)
-    }
-}
 
 /// A path under the cursor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,7 +41,7 @@ pub struct Pickable {
 pub fn paths_at(
     store: &Store,
     lens: &Lens,
-    aim: Aim,
+    aim: Pointer,
     of: Pickable,
     surface: Option<f32>,
 ) -> Vec<Hit> {
@@ -105,7 +85,7 @@ struct Beam<'a> {
 }
 
 impl<'a> Beam<'a> {
-    fn new(lens: &'a Lens, aim: Aim, clip: Vec4) -> Self {
+    fn new(lens: &'a Lens, aim: Pointer, clip: Vec4) -> Self {
         let [x, y] = aim.at;
         let sides = [x - aim.reach, x + aim.reach, y - aim.reach, y + aim.reach];
         Self { lens, at: Vec2::new(x, y), reach: aim.reach, clip, sides }
@@ -227,7 +207,7 @@ pub struct Sight<'a> {
 
 impl Sight<'_> {
     /// The paths under the cursor, in the order in which clicks go through them.
-    pub fn paths(&self, aim: Aim) -> Vec<Selection> {
+    pub fn paths(&self, aim: Pointer) -> Vec<Selection> {
         let clip = self.scene.clip_plane(self.bounds);
         let mesh = self.mesh.filter(|_| self.scene.covers());
         let surface = mesh
@@ -282,7 +262,7 @@ mod tests {
     fn a_click_finds_what_is_near_it_and_nothing_else() {
         let store = store();
         let at = |x: f32, y: f32, reach: f32| {
-            let aim = Aim { at: [x, y], reach };
+            let aim = Pointer { at: [x, y], reach };
             let hits = paths_at(&store, &lens(), aim, ALL, None);
             hits.iter().map(|h| (h.index, h.segment)).collect::<Vec<_>>()
         };
@@ -296,7 +276,7 @@ mod tests {
 
     #[test]
     fn paths_behind_a_surface_come_last() {
-        let aim = Aim { at: [0.01, 0.012], reach: 0.02 };
+        let aim = Pointer { at: [0.01, 0.012], reach: 0.02 };
         let order = |surface| {
             let hits = paths_at(&store(), &lens(), aim, ALL, surface);
             hits.iter().map(|h| h.index).collect::<Vec<_>>()
@@ -307,7 +287,7 @@ mod tests {
 
     #[test]
     fn only_what_is_drawn_is_found() {
-        let aim = Aim { at: [0.01, 0.012], reach: 0.02 };
+        let aim = Pointer { at: [0.01, 0.012], reach: 0.02 };
         let newest = Pickable { newest: 2, ..ALL };
         assert_eq!(
             paths_at(&store(), &lens(), aim, newest, None).len(),

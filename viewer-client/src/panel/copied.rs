@@ -44,6 +44,7 @@ fn status(world: &World<'_>) -> String {
     let mut text = String::new();
     line!(text, "daemon\t{}", status.address);
     match &status.link {
+        LinkState::Idle => line!(text, "state\tidle"),
         LinkState::Connected => line!(text, "state\tconnected"),
         LinkState::Connecting => line!(text, "state\tconnecting"),
         LinkState::Disconnected { reason, .. } => line!(text, "state\tdisconnected: {reason}"),

@@ -48,6 +48,10 @@ fn connection(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     let status = world.status;
     let place = place(status);
     match &status.link {
+        LinkState::Idle => {
+            dot(ui, ui.visuals().weak_text_color());
+            ui.add(Label::new("Nothing to look at").selectable(false));
+        }
         LinkState::Connected => {
             let playing = world.playback.is_some();
             if !playing {
@@ -146,8 +150,8 @@ fn figures(ui: &mut Ui, world: &World<'_>) {
         let waiting = format::bytes(statistics.queued_bytes);
         figure(ui, "waiting", &waiting, &waiting_where(statistics));
     }
-    let bytes = format::bytes(world.status.byte_rate.per_second() as u64);
-    let paths = format::count(world.status.path_rate.per_second());
+    let bytes = format::bytes(world.store.byte_rate() as u64);
+    let paths = format::count(world.store.path_rate());
     figure(ui, "paths/s", &paths, &format!("Paths received a second, {bytes}/s"));
     if let Some(latency) = world.status.latency.filter(|_| world.status.is_connected()) {
         let milliseconds = 1e3 * latency.as_secs_f32();

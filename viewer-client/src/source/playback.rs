@@ -167,7 +167,7 @@ impl Playback {
             rgb: after.header.rgb,
             ..FocusStep::default()
         };
-        Some(Moment { before: Arc::new(focus_path(before)), step })
+        Some(Moment { before: Arc::new(focus_path(before)), step: Arc::new(step) })
     }
 }
 

@@ -7,9 +7,10 @@ use std::io::{self, Write as _};
 
 use anyhow::{Context as _, bail};
 use common::{
-    BatchOrigin, FilterCounts, FilterReply, Gap, PathBatch, PathId, Role, Statistics, Welcome,
+    BatchOrigin, FilterCounts, FilterReply, Gap, PathBatch, PathId, Role, Statistics, TracerEvent,
+    Welcome,
 };
-use proto::{TracerEvent, WantedFilter};
+use proto::WantedFilter;
 use serde_json::{Value, json};
 
 use crate::app::cli::WatchArgs;

@@ -21,7 +21,7 @@ fn driven() -> Stage {
     let author = Author { session, name: "me".to_owned() };
     let me = Attendee { author, role: Role::Driver, ..Attendee::default() };
     let steering = &mut stage.status.steering;
-    steering.take(Notice::Presence(Presence { viewers: vec![me] }));
+    steering.accept(Notice::Presence(Presence { viewers: vec![me] }));
     steering.explorer.current = Some(PathId::default());
     steering.explorer.rate = 2.0;
     let vertices = (0..4).map(vertex).collect();
@@ -90,7 +90,7 @@ fn a_failed_step_says_why() {
     assert!(shows(&harness, "Failed: occluded"), "why it failed");
     click(&mut harness, "Back");
     assert!(harness.state().said.contains(&Command::Scrub(Some(1))), "back by one");
-    harness.state_mut().scrub = Some(1);
+    harness.state_mut().status.steering.focus.scrub = Some(1);
     harness.run();
     assert!(shows(&harness, "Rejected"), "the step before");
     click(&mut harness, "Live");

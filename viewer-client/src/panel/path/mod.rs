@@ -4,6 +4,7 @@ mod align;
 mod file;
 mod light;
 mod splits;
+mod table;
 mod vertices;
 
 use std::time::Duration;
@@ -12,7 +13,7 @@ use common::{ExplorerCommand, Order, PathHeader, Seed};
 use egui::{Button, Color32, Label, RichText, Sense, Ui, vec2};
 
 use self::file::UNKNOWN;
-use self::vertices::Described;
+use self::table::Described;
 use super::Panel;
 use super::widgets::{dot, empty_state, row};
 use crate::command::{Command, PathCommand, VertexStep};

@@ -53,10 +53,10 @@ fn the_bar_at_the_foot_tells_who_drives_what() {
     stage.status.statistics(statistics());
     stage.status.latency = Some(std::time::Duration::from_micros(2500));
     let chains = ChainState { running: false, ..ChainState::default() };
-    stage.status.steering.take(Notice::Chains(chains));
+    stage.status.steering.accept(Notice::Chains(chains));
     let author = Author { session: 9, name: "Ada".to_owned() };
     let driver = Attendee { author, role: Role::Driver, ..Attendee::default() };
-    stage.status.steering.take(Notice::Presence(Presence { viewers: vec![driver] }));
+    stage.status.steering.accept(Notice::Presence(Presence { viewers: vec![driver] }));
     let mut harness = stage.harness();
     harness.set_size(vec2(1280.0, 40.0));
     harness.run_steps(3);

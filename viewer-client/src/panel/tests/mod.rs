@@ -37,7 +37,6 @@ pub(super) struct Stage {
     pub(super) recent: Vec<String>,
     pub(super) model: Option<crate::source::model::Model>,
     pub(super) playback: Option<crate::source::playback::Playback>,
-    pub(super) scrub: Option<u64>,
     panel: Option<Box<dyn Panel>>,
     pub(super) said: Vec<Command>,
 }
@@ -56,7 +55,6 @@ impl Stage {
             recent: Vec::new(),
             model: None,
             playback: None,
-            scrub: None,
             panel: Some(Box::new(panel)),
             said: Vec::new(),
         }
@@ -80,8 +78,8 @@ impl Stage {
             reference: self.reference.as_ref(),
             flip: self.flip.as_ref(),
             selection: self.selection.as_ref(),
-            moment: self.status.steering.focus.moment(self.scrub),
-            scrub: self.scrub,
+            moment: self.status.steering.focus.moment(),
+            scrub: self.status.steering.focus.scrub,
             recent: &self.recent,
             has_home: true,
             playback: self.playback.as_ref(),

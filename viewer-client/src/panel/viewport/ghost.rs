@@ -7,8 +7,8 @@ use common::VertexRecord;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 use glam::Vec3;
 
+use super::ground::{MARGIN, veil};
 use super::highlight::arrow_head;
-use super::overlay::{MARGIN, veil};
 use super::project::Projector;
 use crate::panel::hover;
 use crate::source::steering::Moment;

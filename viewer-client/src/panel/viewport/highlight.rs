@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, FontId, Painter, Pos2, Stroke, vec2};
 use glam::Vec3;
 
-use super::overlay::veil;
+use super::ground::veil;
 use super::project::Projector;
 use crate::panel::hover::{self, Pointed};
 use crate::source::selection::Selection;

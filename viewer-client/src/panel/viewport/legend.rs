@@ -5,7 +5,7 @@ use egui::epaint::Mesh;
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
-use super::overlay::{AXES, MARGIN, veil};
+use super::ground::{AXES, MARGIN, veil};
 use crate::command::{ColorMode, ColorScale};
 use crate::value::format;
 use crate::value::theme;

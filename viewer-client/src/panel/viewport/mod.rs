@@ -3,6 +3,7 @@
 mod gesture;
 mod ghost;
 mod glimpse;
+mod ground;
 mod handles;
 mod highlight;
 mod legend;

@@ -5,19 +5,13 @@ use egui::{
 };
 use glam::Vec3;
 
+use super::ground::{DISC, MARGIN, veil};
 use super::project::Projector;
-use super::{ghost, highlight, light, others, pointed, selectors};
+use super::{ghost, highlight, legend, light, others, pointed, selectors};
 use crate::source::status::LinkState;
 use crate::value::format;
 use crate::value::theme;
 use crate::world::World;
-
-/// Distance of texts from the edge in points.
-pub(super) const MARGIN: f32 = 14.0;
-/// Radius of the disc that the axes lie on, in points.
-const DISC: f32 = 33.0;
-/// Height above the lower edge, in points, from which on nothing of the axes is in the way.
-pub(super) const AXES: f32 = MARGIN + 26.0 + DISC + 8.0;
 
 /// Writes over the view.
 pub(super) fn paint(ui: &Ui, projector: &Projector, rect: Rect, world: &World<'_>) {
@@ -41,7 +35,7 @@ pub(super) fn paint(ui: &Ui, projector: &Projector, rect: Rect, world: &World<'_
     pointed::paint(&painter, projector, world, ink);
     axes(&painter, rect, world, ink);
     captions(&painter, rect, world, ink);
-    super::legend::paint(&painter, rect, world, ink);
+    legend::paint(&painter, rect, world, ink);
 }
 
 /// Darkens what the render camera does not see.
@@ -67,6 +61,10 @@ fn gate(painter: &Painter, rect: Rect, world: &World<'_>) {
 fn nothing_yet(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
     let status = world.status;
     let (title, lines) = match &status.link {
+        LinkState::Idle => {
+            let remedy = "The menu Connection leads to a daemon.".to_owned();
+            ("Nothing to look at".to_owned(), vec![remedy])
+        }
         LinkState::Connecting => {
             (format!("Connecting to {} …", status.address), vec!["One moment.".to_owned()])
         }
@@ -169,12 +167,4 @@ fn text(painter: &Painter, place: Pos2, anchor: Align2, text: &str, color: Color
     let rect = anchor.anchor_size(place, galley.size());
     veil(painter, rect, color);
     painter.galley(rect.min, galley, color);
-}
-
-/// Dims what lies behind light texts, and brightens it behind dark ones.
-pub(super) fn veil(painter: &Painter, rect: Rect, ink: Color32) {
-    let light_ink = ink.intensity() > 0.4;
-    let shade =
-        if light_ink { Color32::from_black_alpha(130) } else { Color32::from_white_alpha(150) };
-    painter.rect_filled(rect.expand2(vec2(7.0, 3.0)), 5.0, shade);
 }

@@ -1,7 +1,8 @@
 //! The connection to a daemon: a thread of its own that connects, listens, and connects again.
 //!
-//! The window never waits for the network: it takes what lies in the [`Inbox`].
+//! The window never waits for the network: it takes in what lies in the [`Inbox`].
 
+mod backlog;
 mod backoff;
 mod inbox;
 mod peer;
@@ -10,7 +11,7 @@ mod session;
 mod tls;
 
 pub use backoff::delay;
-pub use inbox::{Delivery, FocusNews, Inbox};
+pub use inbox::{Arrival, Inbox};
 pub use peer::{Bearer, Peer, Trust};
 pub use proto::Fingerprint;
 pub use session::{Greeting, SceneFetcher, Session, SessionError, own_name};
@@ -20,8 +21,8 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use common::{Appearance, Order, PathId, Role};
-use proto::{NumberedOrder, ReceivedScene, TracerEvent, ViewerEvent, WantedFilter};
+use common::{Appearance, Order, PathId, Role, TracerEvent};
+use proto::{NumberedOrder, ReceivedScene, ViewerEvent, WantedFilter};
 use tokio::sync::{Notify, mpsc};
 use tokio::task::JoinSet;
 use tokio::time::MissedTickBehavior;
@@ -82,7 +83,7 @@ impl Link {
         let shutdown = CancellationToken::new();
         let (outbox, orders) = mpsc::channel(OUTBOX);
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-        let keeper = Keeper {
+        let connection = Connection {
             peer: peer.clone(),
             inbox: Arc::clone(&inbox),
             retry_now: Arc::clone(&retry_now),
@@ -99,7 +100,7 @@ impl Link {
         };
         let thread = std::thread::Builder::new()
             .name("connection".to_owned())
-            .spawn(move || runtime.block_on(keeper.run()))?;
+            .spawn(move || runtime.block_on(connection.run()))?;
         Ok(Self { peer, inbox, retry_now, outbox, shutdown, thread: Some(thread) })
     }
 
@@ -108,14 +109,9 @@ impl Link {
         &self.peer.address
     }
 
-    /// True when something came that is not taken yet.
-    pub fn has_news(&self) -> bool {
-        self.inbox.has_news()
-    }
-
-    /// Takes everything that came.
-    pub fn take(&self) -> Delivery {
-        self.inbox.take()
+    /// Where everything that comes waits to be taken in.
+    pub fn inbox(&self) -> &Arc<Inbox> {
+        &self.inbox
     }
 
     /// Sends an order; the daemon replies to it under the number `request`. False where it cannot be
@@ -125,7 +121,8 @@ impl Link {
     }
 
     /// Sets which paths come; blank for all. The daemon answers with a reply of the same `revision`,
-    /// which must be at least 1 and grow. The filter is set again when the connection is.
+    /// which must be at least 1 and grow. It must be set again when the connection is: a daemon that
+    /// comes back may have a scene that cannot read it.
     pub fn set_filter(&self, revision: u32, text: String) -> bool {
         self.say(ViewerEvent::SetFilter(WantedFilter { revision, text }))
     }
@@ -168,7 +165,7 @@ impl Drop for Link {
 }
 
 /// What the connection's thread owns.
-struct Keeper {
+struct Connection {
     peer: Peer,
     inbox: Arc<Inbox>,
     retry_now: Arc<Notify>,
@@ -181,7 +178,7 @@ struct Keeper {
     greeting: Greeting,
 }
 
-impl Keeper {
+impl Connection {
     async fn run(mut self) {
         let shutdown = self.shutdown.clone();
         let mut failures = 0;
@@ -214,10 +211,8 @@ impl Keeper {
 
     /// Keeps in mind what the next session begins with.
     fn remember(&mut self, event: &ViewerEvent) {
-        match event {
-            ViewerEvent::SetFilter(filter) => self.greeting.filter = Some(filter.clone()),
-            ViewerEvent::SetFocus(on) => self.greeting.focus = *on,
-            _ => {}
+        if let ViewerEvent::SetFocus(on) = event {
+            self.greeting.focus = *on;
         }
     }
 
@@ -251,7 +246,7 @@ impl Keeper {
                 Some(answered) = asking.join_next() => {
                     // Shown with what comes next: not worth a picture of its own.
                     if let Ok(Ok(latency)) = answered {
-                        self.inbox.push_latency(latency);
+                        self.inbox.push(Arrival::Latency(latency));
                     }
                 }
                 Some(event) = self.orders.recv() => {
@@ -270,7 +265,7 @@ impl Keeper {
                             self.set_state(LinkState::Connected);
                         }
                         let haste = Haste::of(&event);
-                        if self.inbox.push(event) {
+                        if self.inbox.hear(event) {
                             (self.waker)(haste);
                         }
                     }
@@ -283,12 +278,12 @@ impl Keeper {
     fn deliver_scene(&mut self, scene: Option<ReceivedScene>) {
         let Some(scene) = scene else { return };
         self.held_hash.clone_from(&scene.hash);
-        self.inbox.push_scene(scene);
+        self.inbox.push(Arrival::Scene(Box::new(scene)));
         (self.waker)(Haste::Now);
     }
 
     fn set_state(&self, state: LinkState) {
-        self.inbox.push_state(state);
+        self.inbox.push(Arrival::Link(state));
         (self.waker)(Haste::Now);
     }
 }

@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
-use common::Role;
+use common::{Role, TracerEvent};
 use proto::v1::tracer_client::TracerClient;
 use proto::{
-    Hello, MAX_MESSAGE_BYTES, ProtocolVersion, ReceivedScene, SceneAssembler, TracerEvent,
-    ViewerEvent, WantedFilter, WireError, v1,
+    Hello, MAX_MESSAGE_BYTES, ProtocolVersion, ReceivedScene, SceneAssembler, ViewerEvent,
+    WantedFilter, WireError, v1,
 };
 use thiserror::Error;
 use tokio::sync::mpsc;

@@ -17,6 +17,8 @@ use std::collections::VecDeque;
 
 use common::{CompiledFilter, PathBatch};
 
+use crate::value::rates::RateMeter;
+
 /// What came, and what did not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
@@ -43,6 +45,8 @@ pub struct Store {
     held: usize,
     budget: usize,
     counts: Counts,
+    path_rate: RateMeter,
+    byte_rate: RateMeter,
     tone: Tone,
     classes: Classes,
     drawn: Drawn,
@@ -59,6 +63,8 @@ impl Store {
             held: 0,
             budget,
             counts: Counts::default(),
+            path_rate: RateMeter::default(),
+            byte_rate: RateMeter::default(),
             tone: Tone::default(),
             classes: Classes::default(),
             drawn: Drawn::default(),
@@ -171,6 +177,22 @@ impl Store {
     /// What came so far.
     pub fn counts(&self) -> Counts {
         self.counts
+    }
+
+    /// Notes what had come by `time` (seconds), for the rates.
+    pub fn measure(&mut self, time: f64) {
+        self.path_rate.note(time, self.counts.paths);
+        self.byte_rate.note(time, self.counts.bytes);
+    }
+
+    /// Paths received a second.
+    pub fn path_rate(&self) -> f64 {
+        self.path_rate.per_second()
+    }
+
+    /// Bytes of paths received a second.
+    pub fn byte_rate(&self) -> f64 {
+        self.byte_rate.per_second()
     }
 
     /// The range of radiances that paths carry.

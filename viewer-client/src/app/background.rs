@@ -1,48 +1,50 @@
-//! Work that takes longer than a frame may: files and other programs, each on a thread of its own.
+//! Work that takes longer than a frame may, each task on a thread of its own that is joined.
 
-use std::path::Path;
 use std::thread::JoinHandle;
 
-use crate::imaging::{FlipMap, Reference};
+use crate::imaging::Finding;
+use crate::source::dump::Stage;
 
-/// Errands that may be under way at the same time.
+/// Tasks that may be under way at the same time.
 const MOST: usize = 4;
 
-/// What an errand brings back.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Errand {
+/// What a task brings back.
+#[derive(Debug)]
+pub enum TaskResult {
     /// It is done, says this.
     Done(String),
-    /// An image to compare with.
-    Reference(Reference),
-    /// How different the image looks from it.
-    Flip(Result<FlipMap, String>),
-}
-
-impl Errand {
-    /// A file is written; says where, since a name alone may lie in any folder.
-    pub fn saved(file: &Path) -> Self {
-        let place = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
-        Self::Done(format!("Saved {}", place.display()))
-    }
+    /// Something about the image of the scene that was shown under the number `of`.
+    Image {
+        /// See [`crate::source::Shown::serial`].
+        of: u64,
+        /// What was found.
+        finding: Finding,
+    },
+    /// A file of paths was read.
+    Opened {
+        /// Its name.
+        name: String,
+        /// What it holds.
+        stage: Box<Stage>,
+    },
 }
 
 /// What went well, or why not and what to do.
-pub type Outcome = Result<Errand, String>;
+pub type Outcome = Result<TaskResult, String>;
 
-/// The errands under way.
+/// The tasks under way.
 #[derive(Debug, Default)]
-pub struct Errands {
+pub struct BackgroundTasks {
     threads: Vec<JoinHandle<Outcome>>,
 }
 
-impl Errands {
-    /// Begins an errand; the answer tells why it cannot begin now.
+impl BackgroundTasks {
+    /// Begins a task; the answer tells why it cannot begin now.
     pub fn start(&mut self, work: impl FnOnce() -> Outcome + Send + 'static) -> Result<(), String> {
         if self.threads.len() >= MOST {
             return Err("too much is under way; try again in a moment".to_owned());
         }
-        let thread = std::thread::Builder::new().name("errand".to_owned()).spawn(work);
+        let thread = std::thread::Builder::new().name("background".to_owned()).spawn(work);
         self.threads.push(thread.map_err(|error| format!("cannot start a thread: {error}"))?);
         Ok(())
     }
@@ -53,13 +55,13 @@ impl Errands {
     }
 
     /// What those that have ended brought back.
-    pub fn take(&mut self) -> Vec<Outcome> {
+    pub fn finished(&mut self) -> Vec<Outcome> {
         let ended = self.threads.extract_if(.., |thread| thread.is_finished());
         ended.map(join).collect()
     }
 }
 
-impl Drop for Errands {
+impl Drop for BackgroundTasks {
     fn drop(&mut self) {
         for outcome in self.threads.drain(..).map(join) {
             if let Err(problem) = outcome {
@@ -80,23 +82,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn errands_come_back_and_are_bounded() {
-        let mut errands = Errands::default();
+    fn tasks_come_back_and_are_bounded() {
+        let mut tasks = BackgroundTasks::default();
         let gate = Arc::new(Barrier::new(MOST + 1));
         for i in 0..MOST {
             let gate = Arc::clone(&gate);
             let work = move || {
                 gate.wait();
-                Ok(Errand::Done(i.to_string()))
+                Ok(TaskResult::Done(i.to_string()))
             };
-            errands.start(work).expect("there is room");
+            tasks.start(work).expect("there is room");
         }
-        assert!(errands.take().is_empty(), "all wait");
-        assert!(errands.start(|| Err(String::new())).is_err(), "there is no more room");
+        assert!(tasks.finished().is_empty(), "all wait");
+        assert!(tasks.start(|| Err(String::new())).is_err(), "there is no more room");
         gate.wait();
         let mut outcomes = Vec::new();
-        while errands.is_busy() {
-            outcomes.extend(errands.take());
+        while tasks.is_busy() {
+            outcomes.extend(tasks.finished());
             std::thread::yield_now();
         }
         assert_eq!(outcomes.len(), MOST, "all came back: {outcomes:?}");
