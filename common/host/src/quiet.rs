@@ -1,6 +1,8 @@
 //! What libraries in other languages print to standard error, kept from it for a while.
 
 use std::io;
+#[cfg(unix)]
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Holds back what is printed to standard error past the log, until it ends or is dropped.
 ///
@@ -36,9 +38,20 @@ struct Diversion {
     kept: std::fs::File,
 }
 
+/// Of two diversions at a time, the first to end would bring standard error to nobody's place.
+#[cfg(unix)]
+static DIVERTED: AtomicBool = AtomicBool::new(false);
+
 #[cfg(unix)]
 impl Diversion {
     fn begin() -> io::Result<Self> {
+        if DIVERTED.swap(true, Ordering::AcqRel) {
+            return Err(io::ErrorKind::ResourceBusy.into());
+        }
+        Self::divert().inspect_err(|_| DIVERTED.store(false, Ordering::Release))
+    }
+
+    fn divert() -> io::Result<Self> {
         use std::os::fd::AsFd as _;
 
         let usual = io::stderr().as_fd().try_clone_to_owned()?;
@@ -53,6 +66,7 @@ impl Diversion {
         /// Nobody reads more.
         const MOST: u64 = 64 << 10;
         rustix::stdio::dup2_stderr(&self.usual)?;
+        DIVERTED.store(false, Ordering::Release);
         self.kept.seek(SeekFrom::Start(0))?;
         let mut text = Vec::new();
         self.kept.take(MOST).read_to_end(&mut text)?;

@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use crate::app::Viewer;
 use crate::app::cli::{Action, Cli, Target, ViewArgs};
-use crate::app::headless::Wait;
+use crate::app::headless::{Job, Wait};
 use crate::app::{bench, headless, script, share, watch, window};
 use crate::source::connection::Peer;
 use crate::source::{Source, dump, embedded};
@@ -55,7 +55,7 @@ fn view(args: &ViewArgs) -> anyhow::Result<()> {
             (Some(Peer::open(daemon.address().to_string())), Some(daemon))
         }
     };
-    let mut viewer = if let Some(Target::File(file)) = &args.source {
+    let viewer = if let Some(Target::File(file)) = &args.source {
         open(file, args.surfaces.as_deref())?
     } else {
         let address = peer.as_ref().map(|peer| peer.address.clone()).unwrap_or_default();
@@ -66,8 +66,7 @@ fn view(args: &ViewArgs) -> anyhow::Result<()> {
             (Some(paths), _) => Wait::Paths(paths),
             (None, time) => Wait::Time(time.unwrap_or(DEFAULT_WAIT)),
         };
-        viewer.run_script(commands);
-        headless::run(viewer, peer, args.size, wait, file)
+        headless::run(viewer, peer, Job { size: args.size, wait, file, commands })
     } else {
         window::run(viewer, peer, commands).context("the viewer ended")
     }

@@ -15,7 +15,9 @@ use egui_wgpu::RenderState;
 
 use super::background::{BackgroundTasks, Outcome, TaskResult};
 use super::desktop::{Connect, Desktop};
-use crate::command::{CloudCommand, Command, ImageCommand, LayoutCommand, PlayCommand};
+use crate::command::{
+    CloudCommand, Command, DeskCommand, ImageCommand, LayoutCommand, PlayCommand,
+};
 use crate::draw::gpu::{Quality, Renderer};
 use crate::habits::Habits;
 use crate::imaging::{Finding, Job};
@@ -48,6 +50,8 @@ pub struct Viewer {
     on_card: OnCard,
     started: Instant,
     closing: bool,
+    /// Commands that give something away wait.
+    holds_back: bool,
 }
 
 impl Viewer {
@@ -64,6 +68,7 @@ impl Viewer {
             on_card: OnCard::default(),
             started: Instant::now(),
             closing: false,
+            holds_back: false,
         };
         viewer.look_at(source);
         viewer
@@ -115,15 +120,44 @@ impl Viewer {
         Habits { filters, layout, ..self.desktop.habits.clone() }
     }
 
-    /// Follows the commands of a script, each as soon as what it needs has come.
+    /// Follows the commands of a script in their order, each as soon as what it needs has come and what
+    /// the one before began is done.
     pub fn run_script(&mut self, commands: Vec<Command>) {
         for command in commands {
-            if self.source.makes_wait(&command) {
-                self.source.script.push(command);
-            } else {
+            let is_next = self.source.script.is_empty() && !self.is_at_work();
+            let must_wait =
+                self.source.makes_wait(&command) || self.holds_back && gives_away(&command);
+            if is_next && !must_wait {
                 self.apply(command);
+            } else {
+                self.source.script.push(command);
             }
         }
+    }
+
+    /// Whether commands of a script that give something away wait: until all of it has come.
+    pub fn hold_back(&mut self, holds_back: bool) {
+        self.holds_back = holds_back;
+    }
+
+    /// Commands of a script that are still to be followed.
+    pub fn commands_left(&self) -> usize {
+        self.source.script.len()
+    }
+
+    /// The next of them.
+    pub fn next_command(&self) -> Option<&Command> {
+        self.source.script.first()
+    }
+
+    /// True while something that a command began is not done.
+    fn is_at_work(&self) -> bool {
+        self.tasks.is_busy() || self.desktop.is_waiting()
+    }
+
+    /// True when nothing is left to do of what was asked for.
+    pub fn is_idle(&self) -> bool {
+        self.source.script.is_empty() && !self.is_at_work()
     }
 
     /// True once the user wants to leave.
@@ -136,9 +170,15 @@ impl Viewer {
         self.source.shown.store.counts().paths
     }
 
-    /// True when scene, image, statistics and all paths that have come are taken in.
+    /// True when scene, image, statistics and all paths that have come are taken in, and nothing is left to
+    /// do.
     pub fn is_settled(&self) -> bool {
-        let Source { origin, shown, status, script, .. } = &self.source;
+        self.has_everything() && self.is_idle()
+    }
+
+    /// True when scene, image, statistics and all paths that have come are taken in.
+    pub fn has_everything(&self) -> bool {
+        let Source { origin, shown, status, .. } = &self.source;
         let threshold = self.settings.cloud.threshold as usize;
         let agrees = match origin {
             Origin::Daemon(daemon) => {
@@ -147,8 +187,7 @@ impl Viewer {
             Origin::Nothing | Origin::File(_) => true,
         };
         let whole = shown.model.is_some() && shown.image.film.size() != [0, 0];
-        let idle = script.is_empty() && !self.tasks.is_busy();
-        whole && idle && agrees && status.statistics.is_some()
+        whole && agrees && status.statistics.is_some()
     }
 
     /// What is known of the daemon.
@@ -183,8 +222,11 @@ impl Viewer {
             self.desktop.habits.note(&self.source.status.address);
         }
         let finished = self.finish_tasks();
+        if let Some(problem) = self.source.shown.image.drop_misfit(&mut self.settings.image) {
+            self.say(Err(problem));
+        }
         self.appear();
-        if arrived.news {
+        if !self.source.script.is_empty() {
             self.go_on();
         }
         arrived.news || finished
@@ -460,6 +502,20 @@ impl Viewer {
     /// The box round the scene, once it has come.
     pub fn bounds(&self) -> Option<Bounds> {
         self.source.shown.model.as_ref().map(|model| model.bounds)
+    }
+}
+
+/// True for commands whose result leaves the viewer.
+fn gives_away(command: &Command) -> bool {
+    match command {
+        Command::Image(command) => match command {
+            ImageCommand::Save(_) | ImageCommand::Tev(_) => true,
+            ImageCommand::Show(layer) => layer.compares(),
+            _ => false,
+        },
+        Command::Desk(command) => !matches!(command, DeskCommand::Connect(_)),
+        Command::Quit => true,
+        _ => false,
     }
 }
 
