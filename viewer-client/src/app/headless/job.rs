@@ -132,7 +132,12 @@ fn what_is_missing(viewer: &Viewer) -> String {
 fn finish_script(stage: &mut Stage, viewer: &mut Viewer) -> anyhow::Result<()> {
     let mut progress = (Instant::now(), viewer.commands_left());
     while !viewer.is_idle() && !viewer.is_closing() {
-        viewer.receive();
+        // What is given away is all of one moment, unless a command needs more than there is.
+        if viewer.wants_more() {
+            viewer.receive();
+        } else {
+            viewer.work_on();
+        }
         stage.frame(viewer)?;
         stage.give_pictures(viewer)?;
         print(&stage.take_copied())?;

@@ -221,15 +221,26 @@ impl Viewer {
         if arrived.session && !self.source.status.embedded {
             self.desktop.habits.note(&self.source.status.address);
         }
+        let finished = self.work_on();
+        self.appear();
+        arrived.news || finished
+    }
+
+    /// Goes on with what is under way, without taking in what has come. True when anything was done.
+    pub fn work_on(&mut self) -> bool {
         let finished = self.finish_tasks();
         if let Some(problem) = self.source.shown.image.drop_misfit(&mut self.settings.image) {
             self.say(Err(problem));
         }
-        self.appear();
         if !self.source.script.is_empty() {
             self.go_on();
         }
-        arrived.news || finished
+        finished
+    }
+
+    /// True where the next command of the script waits for something to come.
+    pub fn wants_more(&self) -> bool {
+        self.next_command().is_some_and(|command| self.source.makes_wait(command))
     }
 
     /// Goes on with the script as far as what has come allows.
@@ -329,17 +340,17 @@ impl Viewer {
     fn finish_tasks(&mut self) -> bool {
         let outcomes = self.tasks.finished();
         let any = !outcomes.is_empty();
+        for outcome in outcomes {
+            if let Some(said) = self.finish(outcome) {
+                self.say(said);
+            }
+        }
         if !self.tasks.is_busy() {
             let next = self.source.shown.image.next_comparison(&self.settings.image);
             let started = next.and_then(|job| job.map_or(Ok(()), |job| self.start(job)));
             if let Err(problem) = started {
                 self.settings.image.layer = crate::command::Layer::Difference;
                 self.say(Err(problem));
-            }
-        }
-        for outcome in outcomes {
-            if let Some(said) = self.finish(outcome) {
-                self.say(said);
             }
         }
         any
