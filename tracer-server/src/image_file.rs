@@ -23,20 +23,20 @@ pub enum ImageError {
     #[error(transparent)]
     Picture(#[from] PictureError),
     /// The EXR library refused.
-    #[error("`{file}`: {source}")]
+    #[error("`{file}`: {problem}")]
     Exr {
         /// The file.
         file: String,
         /// What it said.
-        source: exr::error::Error,
+        problem: exr::error::Error,
     },
     /// The PNG library refused.
-    #[error("`{file}`: {source}")]
+    #[error("`{file}`: {problem}")]
     Png {
         /// The file.
         file: String,
         /// What it said.
-        source: image::ImageError,
+        problem: image::ImageError,
     },
 }
 
@@ -89,11 +89,10 @@ impl Destination {
                 let size = [image.width(), image.height()].map(|side| side as usize);
                 let pixel = |x: usize, y: usize| image.pixels()[y * size[0] + x].to_f32();
                 picture::write_exr(output, size, pixel, metadata)
-                    .map_err(|source| ImageError::Exr { file: file(), source })
+                    .map_err(|problem| ImageError::Exr { file: file(), problem })
             }
-            Format::Png => {
-                write_png(output, image).map_err(|source| ImageError::Png { file: file(), source })
-            }
+            Format::Png => write_png(output, image)
+                .map_err(|problem| ImageError::Png { file: file(), problem }),
         })
     }
 }

@@ -27,12 +27,12 @@ const MAX_SIDE: usize = 1 << 15;
 #[derive(Debug, Error)]
 pub enum PictureError {
     /// There is no such file, or it is no EXR file.
-    #[error("`{file}`: {source}")]
+    #[error("`{file}`: {problem}")]
     Exr {
         /// The file.
         file: String,
         /// What the library said.
-        source: ExrError,
+        problem: ExrError,
     },
     /// There is no picture in it, or more than one.
     #[error("`{file}` has {what} among its channels {channels}; call the picture's R, G and B")]
@@ -72,7 +72,7 @@ impl Picture {
 /// and others keep it in, or Y.
 pub fn read_exr(path: &Path) -> Result<Picture, PictureError> {
     let file = || path.display().to_string();
-    let told = |source| PictureError::Exr { file: file(), source };
+    let told = |problem| PictureError::Exr { file: file(), problem };
     let meta = MetaData::read_from_file(path, false).map_err(told)?;
     let choice = channels::choose(&meta).map_err(|what| {
         let channels = channels::list(&meta);

@@ -69,7 +69,10 @@ fn understand(read: &io::Result<usize>, bytes: &[u8]) -> Found {
         (Ok(9..), [_, _, _, 0x04, ..]) => Found::Plain,
         // An alert (RFC 8446, section 5.1).
         (_, [0x15, 0x03, ..]) => Found::Encrypted,
-        (_, bytes) if bytes.starts_with(b"HTTP/") => Found::Other("a web server"),
+        // Some answer to what they do not understand with a page and no more.
+        (_, bytes) if bytes.starts_with(b"HTTP/") || bytes.starts_with(b"<") => {
+            Found::Other("a web server")
+        }
         (_, bytes) if bytes.starts_with(b"SSH-") => Found::Other("an SSH server"),
         _ => Found::Other("something else"),
     }
@@ -114,6 +117,7 @@ mod tests {
         for (address, words) in [
             (peer(b"SSH-2.0-OpenSSH_9.6\r\n", b""), "is an SSH server"),
             (peer(b"", b"HTTP/1.1 400 Bad Request\r\n\r\n"), "is a web server"),
+            (peer(b"", b"<!DOCTYPE HTML>\n"), "is a web server"),
             (peer(b"", alert), "encrypts: give the fingerprint"),
             (peer(b"220 mail ESMTP\r\n", b""), "is something else"),
             (peer(b"", b""), "hangs up at once"),
