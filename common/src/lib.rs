@@ -38,7 +38,7 @@ pub use filter::{
 pub use id::{ChainId, MaterialId, NoPathId, PathId, StrategyId};
 pub use mesh::{MaterialInfo, SceneFrame, SceneMesh, TexturePreview};
 pub use message::TracerEvent;
-pub use metric::{Floor, mean_of_smallest, mean_ratio, relative_errors, relative_mse};
+pub use metric::{Floor, known, mean_of_smallest, mean_ratio, relative_errors, relative_mse};
 pub use session::{
     ChainTotals, FailureCount, FilmFrame, FilmTile, FilterReply, Gap, Queue, Role, Statistics,
     StrategyStatistics, Welcome,

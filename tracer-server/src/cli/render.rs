@@ -219,6 +219,7 @@ impl Job {
         if let Some(reference) = &self.reference {
             report.relative_mse = Some(relative_mse(image.pixels(), reference.pixels()));
             report.mean_ratio = Some(mean_ratio(image.pixels(), reference.pixels()));
+            report.reference_missing = missing(reference);
         }
         self.image.write(&image, &metadata(&report))?;
         if let Some(stats) = &self.stats {
@@ -263,6 +264,11 @@ pub(super) fn check_reference(reference: &Film, scene: &Scene) -> anyhow::Result
         camera.height,
     );
     Ok(())
+}
+
+/// Pixels for which a reference has no value.
+pub(super) fn missing(reference: &Film) -> usize {
+    reference.pixels().iter().filter(|pixel| !pixel.is_finite()).count()
 }
 
 /// What an EXR file's header tells of the image.
@@ -354,6 +360,10 @@ fn print(out: &mut impl Write, report: &Report, file: &Destination) -> io::Resul
              {ratio:.5}",
             error * report.cpu_seconds,
         )?;
+        if report.reference_missing > 0 {
+            let missing = report.reference_missing;
+            writeln!(out, "the reference has no value for {missing} pixels, which are left out")?;
+        }
     }
     writeln!(out, "written to {}", file.path().display())
 }

@@ -19,7 +19,7 @@ use serde::Serialize;
 use super::chains::ChainArgs;
 use super::input::{self, FilmSize};
 use super::meter::Meter;
-use super::render::{IntegratorName, PrimaryArgs, check_reference, seconds};
+use super::render::{IntegratorName, PrimaryArgs, check_reference, missing, seconds};
 use crate::chain::EnsembleSettings;
 use crate::image_file;
 use crate::integrator::pssmlt::PrimarySettings;
@@ -192,6 +192,12 @@ impl TradeArgs {
         if let Some(file) = &self.reference {
             let image = image_file::read_exr(file)?;
             check_reference(&image, scene)?;
+            let missing = missing(&image);
+            if missing > 0 {
+                tracing::warn!(
+                    "the reference has no value for {missing} pixels, which are left out"
+                );
+            }
             return Ok(Reference { image, error: None });
         }
         let settings = RenderSettings {

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
 
 use egui::{Color32, ColorImage};
+use host::file::Place;
 
 use super::background::{BackgroundTasks, Outcome, TaskResult};
 use super::preferences::Preferences;
@@ -54,6 +55,11 @@ impl Desktop {
         self.wanted = Some(PathBuf::from(file));
     }
 
+    /// True while something that was asked for is still to be done.
+    pub fn is_waiting(&self) -> bool {
+        self.copied.is_some() || self.wanted.is_some() || self.awaited.is_some()
+    }
+
     /// Does what was asked for; once a frame. The answer tells why something cannot begin.
     pub fn work(&mut self, ctx: &egui::Context, tasks: &mut BackgroundTasks) -> Result<(), String> {
         if let Some(text) = self.copied.take() {
@@ -82,7 +88,10 @@ fn write(image: &ColorImage, file: &std::path::Path) -> Outcome {
     let bytes: Vec<u8> = image.pixels.iter().flat_map(Color32::to_array).collect();
     let png = image::RgbaImage::from_raw(width, height, bytes)
         .ok_or_else(|| "The window has an odd size.".to_owned())?;
-    png.save_with_format(file, image::ImageFormat::Png)
+    let write = || -> anyhow::Result<()> {
+        Place::find(file)?.write(|output| Ok(png.write_to(output, image::ImageFormat::Png)?))
+    };
+    write()
         .map(|()| TaskResult::Done(saved_text(file)))
-        .map_err(|error| format!("{} cannot be written: {error}", file.display()))
+        .map_err(|error| format!("The picture of the window cannot be saved: {error:#}"))
 }

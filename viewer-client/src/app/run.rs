@@ -4,16 +4,22 @@ use std::path::Path;
 use std::time::Duration;
 
 use anyhow::Context as _;
+use thiserror::Error;
 
 use crate::app::Viewer;
 use crate::app::cli::{Action, Cli, Target, ViewArgs};
-use crate::app::headless::Wait;
+use crate::app::headless::{Job, Wait};
 use crate::app::{bench, headless, script, share, watch, window};
 use crate::source::connection::Peer;
 use crate::source::{Source, dump, embedded, file};
 
 /// A picture is taken after this long when nothing else is asked for.
 const DEFAULT_WAIT: Duration = Duration::from_secs(5);
+
+/// Something that was asked for and could not be done, although nothing is wrong with how it was asked.
+#[derive(Debug, Error)]
+#[error("{0}")]
+pub struct Failed(pub String);
 
 /// Does what the command line says.
 pub fn run(cli: Cli) -> anyhow::Result<()> {
@@ -49,7 +55,7 @@ fn view(args: &ViewArgs) -> anyhow::Result<()> {
             (Some(Peer::open(daemon.address().to_string())), Some(daemon))
         }
     };
-    let mut viewer = if let Some(Target::File(file)) = &args.source {
+    let viewer = if let Some(Target::File(file)) = &args.source {
         open(file, args.surfaces.as_deref())?
     } else {
         let address = peer.as_ref().map(|peer| peer.address.clone()).unwrap_or_default();
@@ -60,8 +66,7 @@ fn view(args: &ViewArgs) -> anyhow::Result<()> {
             (Some(paths), _) => Wait::Paths(paths),
             (None, time) => Wait::Time(time.unwrap_or(DEFAULT_WAIT)),
         };
-        viewer.run_script(commands);
-        headless::run(viewer, peer, args.size, wait, file)
+        headless::run(viewer, peer, Job { size: args.size, wait, file, commands })
     } else {
         window::run(viewer, peer, commands).context("the viewer ended")
     }

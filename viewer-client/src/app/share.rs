@@ -7,7 +7,6 @@
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 use thiserror::Error;
 
-use crate::app::script::outside_quotes;
 use crate::camera::ViewCamera;
 use crate::command::{CameraCommand, Command, FilterCommand, ImageCommand, PathCommand, Trait};
 use crate::settings::Settings;
@@ -58,8 +57,10 @@ pub fn link(
     selection: Option<&Selection>,
 ) -> String {
     let commands = view(camera, settings, selection);
-    let texts: Vec<String> = commands.iter().map(ToString::to_string).collect();
-    format!("{SCHEME}{address}#{}", utf8_percent_encode(&texts.join(";"), PLAIN))
+    // Each by itself: names may hold what divides commands.
+    let encode = |command: &Command| utf8_percent_encode(&command.to_string(), PLAIN).to_string();
+    let texts: Vec<String> = commands.iter().map(encode).collect();
+    format!("{SCHEME}{address}#{}", texts.join(";"))
 }
 
 /// The commands that restore what is seen now.
@@ -106,30 +107,18 @@ pub fn read(link: &str) -> Result<Shared, LinkError> {
     if address.is_empty() {
         return Err(LinkError::NoLink);
     }
-    let text = percent_decode_str(encoded).decode_utf8()?;
-    let parts = parts(&text).into_iter().map(str::trim).filter(|part| !part.is_empty());
+    let parts = encoded.split(';').filter(|part| !part.is_empty());
     let commands = parts.map(|part| {
-        let problem = |error| LinkError::BadCommand(part.to_owned(), error);
+        let part = percent_decode_str(part).decode_utf8()?;
+        let problem = |error| LinkError::BadCommand(part.clone().into_owned(), error);
         let command: Command = part.parse().map_err(problem)?;
         if command.form().is(Trait::Linked) {
             Ok(command)
         } else {
-            Err(LinkError::Forbidden(part.to_owned()))
+            Err(LinkError::Forbidden(part.into_owned()))
         }
     });
     Ok(Shared { address, commands: commands.collect::<Result<_, LinkError>>()? })
-}
-
-/// The commands of a link: a semicolon ends one, except within quotes.
-fn parts(text: &str) -> Vec<&str> {
-    let ends = outside_quotes(text).filter(|(_, letter)| *letter == ';').map(|(i, _)| i);
-    let mut parts = Vec::new();
-    let mut start = 0;
-    for end in ends.chain([text.len()]) {
-        parts.push(&text[start..end]);
-        start = end + 1;
-    }
-    parts
 }
 
 #[cfg(test)]
@@ -142,8 +131,7 @@ mod tests {
     #[test]
     fn a_link_restores_the_view() {
         let mut settings = Settings::default();
-        let text = "any on material \"a;b 100%\" and any on material \"O'Brien \\\"#1\\\";стекло\" \
-                    and film in rect(0.25, 0, 1, 0.5)";
+        let text = r#"any on material "a; b 100% #1 \"стекло\"" and film in rect(0.25, 0, 1, 0.5)"#;
         settings.filter.apply(&FilterCommand::Set(FilterText::read(text)));
         settings.image.layer = Layer::Dwell;
         settings.scene.opacity = 0.25;

@@ -19,10 +19,10 @@ table! {
         /// Leaves what is looked at, and looks at nothing.
         Leave "leave";
         /// Copies a link that restores camera, filter, selection and looks.
-        Share "share";
+        Share "share", Gives;
         /// Writes the whole window as an image.
-        Screenshot "screenshot" (file: String [Line::Any("FILE.png")]);
+        Screenshot "screenshot" (file: String [Line::Any("FILE.png")]), Gives;
         /// Copies as text what a panel says, the state of the session, or all settings as commands.
-        Copy "copy" (source: Part);
+        Copy "copy" (source: Part), Gives;
     }
 }

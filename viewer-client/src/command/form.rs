@@ -46,6 +46,8 @@ pub enum Trait {
     Linked,
     /// It opens or closes what is before the eyes for a moment, so that there is nothing to undo.
     Passing,
+    /// Its result leaves the viewer.
+    Gives,
     /// It sets something that is remembered from one day to the next.
     Kept,
 }

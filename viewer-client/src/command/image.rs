@@ -43,8 +43,8 @@ table! {
         /// Compares with nothing.
         Forget "image forget";
         /// Writes the radiance as .exr, or what is shown as .png.
-        Save "image save" (file: String [Line::Any("FILE")]);
+        Save "image save" (file: String [Line::Any("FILE")]), Gives;
         /// Sends the image to the viewer tev, whose port is 14158.
-        Tev "image tev" (address: String [Line::Any("HOST:PORT")]);
+        Tev "image tev" (address: String [Line::Any("HOST:PORT")]), Gives;
     }
 }

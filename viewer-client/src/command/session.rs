@@ -15,6 +15,6 @@ table! {
         /// Connects now instead of waiting for the next attempt.
         Reconnect "reconnect";
         /// Closes the viewer.
-        Quit "quit";
+        Quit "quit", Gives;
     }
 }

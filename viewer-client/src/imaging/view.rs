@@ -146,6 +146,18 @@ impl ImageView {
         }
     }
 
+    /// Forgets a reference that does not fit the image, which may come after it; the answer is for the
+    /// user.
+    pub fn drop_misfit(&mut self, look: &mut ImageSettings) -> Option<String> {
+        let is_there = self.film.size() != [0, 0];
+        let misfit = self.reference.take_if(|reference| is_there && !reference.fits(&self.film))?;
+        self.flip = None;
+        if look.layer.compares() {
+            look.layer = Layer::Image;
+        }
+        self.compare_with(misfit, look).err()
+    }
+
     fn compare_with(
         &mut self,
         reference: Reference,
@@ -159,7 +171,10 @@ impl ImageView {
                  render the reference in the image's size"
             ));
         }
-        let said = format!("Compared with {name}");
+        let said = match reference.missing() {
+            0 => format!("Compared with {name}"),
+            missing => format!("Compared with {name}, which has no value for {missing} pixels"),
+        };
         (self.reference, self.flip) = (Some(reference), None);
         if !look.layer.compares() {
             look.layer = Layer::Difference;
@@ -243,7 +258,14 @@ mod tests {
         }
         let name = "r".to_owned();
         let other = Reference { name, width: 1, height: 1, pixels: vec![Rgb::BLACK] };
-        let refused = view.compare_with(other, &mut look).expect_err("another size");
+        let refused = view.compare_with(other.clone(), &mut look).expect_err("another size");
         assert!(refused.contains("2 × 2"), "{refused}");
+        let mut early = ImageView::default();
+        early.compare_with(other, &mut look).expect("there is no image yet");
+        assert_eq!(early.drop_misfit(&mut look), None, "nor is there now");
+        early.film = view.film;
+        let refused = early.drop_misfit(&mut look).expect("it does not fit");
+        assert!(refused.contains("2 × 2"), "{refused}");
+        assert_eq!((early.reference, look.layer), (None, Layer::Image), "nothing to compare with");
     }
 }

@@ -48,6 +48,8 @@ pub struct Viewer {
     on_card: OnCard,
     started: Instant,
     closing: bool,
+    /// Commands that give something away wait.
+    holds_back: bool,
 }
 
 impl Viewer {
@@ -64,6 +66,7 @@ impl Viewer {
             on_card: OnCard::default(),
             started: Instant::now(),
             closing: false,
+            holds_back: false,
         };
         viewer.look_at(source);
         viewer
@@ -110,15 +113,44 @@ impl Viewer {
         Preferences::of(&self.settings, &self.desktop.preferences)
     }
 
-    /// Follows the commands of a script, each as soon as what it needs has come.
+    /// Follows the commands of a script in their order, each as soon as what it needs has come and what
+    /// the one before began is done.
     pub fn run_script(&mut self, commands: Vec<Command>) {
         for command in commands {
-            if self.source.makes_wait(&command) {
-                self.source.script.push(command);
-            } else {
+            let is_next = self.source.script.is_empty() && !self.is_at_work();
+            let must_wait =
+                self.source.makes_wait(&command) || self.holds_back && gives_away(&command);
+            if is_next && !must_wait {
                 self.apply(command);
+            } else {
+                self.source.script.push(command);
             }
         }
+    }
+
+    /// Whether commands of a script that give something away wait: until all of it has come.
+    pub fn hold_back(&mut self, holds_back: bool) {
+        self.holds_back = holds_back;
+    }
+
+    /// Commands of a script that are still to be followed.
+    pub fn commands_left(&self) -> usize {
+        self.source.script.len()
+    }
+
+    /// The next of them.
+    pub fn next_command(&self) -> Option<&Command> {
+        self.source.script.first()
+    }
+
+    /// True while something that a command began is not done.
+    fn is_at_work(&self) -> bool {
+        self.tasks.is_busy() || self.desktop.is_waiting()
+    }
+
+    /// True when nothing is left to do of what was asked for.
+    pub fn is_idle(&self) -> bool {
+        self.source.script.is_empty() && !self.is_at_work()
     }
 
     /// True once the user wants to leave.
@@ -131,9 +163,15 @@ impl Viewer {
         self.source.shown.store.counts().paths
     }
 
-    /// True when scene, image, statistics and all paths that have come are taken in.
+    /// True when scene, image, statistics and all paths that have come are taken in, and nothing is left to
+    /// do.
     pub fn is_settled(&self) -> bool {
-        let Source { origin, shown, status, script, .. } = &self.source;
+        self.has_everything() && self.is_idle()
+    }
+
+    /// True when scene, image, statistics and all paths that have come are taken in.
+    pub fn has_everything(&self) -> bool {
+        let Source { origin, shown, status, .. } = &self.source;
         let threshold = self.settings.cloud.threshold as usize;
         let agrees = match origin {
             Origin::Daemon(daemon) => {
@@ -142,8 +180,7 @@ impl Viewer {
             Origin::Nothing | Origin::File(_) => true,
         };
         let whole = shown.model.is_some() && shown.image.film.size() != [0, 0];
-        let idle = script.is_empty() && !self.tasks.is_busy();
-        whole && idle && agrees && status.statistics.is_some()
+        whole && agrees && status.statistics.is_some()
     }
 
     /// What the user has chosen.
@@ -182,12 +219,26 @@ impl Viewer {
         if arrived.session && !self.source.status.embedded {
             self.desktop.preferences.add_recent(&self.source.status.address);
         }
-        let finished = self.finish_tasks();
+        let finished = self.work_on();
         self.appear();
-        if arrived.news {
+        arrived.news || finished
+    }
+
+    /// Goes on with what is under way, without taking in what has come. True when anything was done.
+    pub fn work_on(&mut self) -> bool {
+        let finished = self.finish_tasks();
+        if let Some(problem) = self.source.shown.image.drop_misfit(&mut self.settings.image) {
+            self.say(Err(problem));
+        }
+        if !self.source.script.is_empty() {
             self.go_on();
         }
-        arrived.news || finished
+        finished
+    }
+
+    /// True where the next command of the script waits for something to come.
+    pub fn wants_more(&self) -> bool {
+        self.next_command().is_some_and(|command| self.source.makes_wait(command))
     }
 
     /// Goes on with the script as far as what has come allows.
@@ -283,17 +334,17 @@ impl Viewer {
     fn finish_tasks(&mut self) -> bool {
         let outcomes = self.tasks.finished();
         let any = !outcomes.is_empty();
+        for outcome in outcomes {
+            if let Some(said) = self.finish(outcome) {
+                self.say(said);
+            }
+        }
         if !self.tasks.is_busy() {
             let next = self.source.shown.image.next_comparison(&self.settings.image);
             let started = next.and_then(|job| job.map_or(Ok(()), |job| self.start(job)));
             if let Err(problem) = started {
                 self.settings.image.layer = crate::value::Layer::Difference;
                 self.say(Err(problem));
-            }
-        }
-        for outcome in outcomes {
-            if let Some(said) = self.finish(outcome) {
-                self.say(said);
             }
         }
         any
@@ -460,5 +511,13 @@ impl Viewer {
     /// The box round the scene, once it has come.
     pub fn bounds(&self) -> Option<Bounds> {
         self.source.shown.model.as_ref().map(|model| model.bounds)
+    }
+}
+
+/// True for commands whose result leaves the viewer.
+fn gives_away(command: &Command) -> bool {
+    match command {
+        Command::Image(ImageCommand::Show(layer)) => layer.compares(),
+        _ => command.form().is(Trait::Gives),
     }
 }

@@ -1,7 +1,9 @@
 //! What is written over the view: axes, legend, the render camera's gate, and why it is empty.
 
+use egui::text::LayoutJob;
 use egui::{
-    Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, StrokeKind, Ui, pos2, vec2,
+    Align, Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, StrokeKind, Ui,
+    pos2, vec2,
 };
 use glam::Vec3;
 
@@ -12,6 +14,9 @@ use crate::source::status::LinkState;
 use crate::value::format;
 use crate::value::theme;
 use crate::world::World;
+
+/// Distance of lines in the middle of the view, in points.
+const GAP: f32 = 6.0;
 
 /// Writes over the view.
 pub(super) fn paint(ui: &Ui, projector: &Projector, rect: Rect, world: &World<'_>) {
@@ -74,8 +79,7 @@ fn nothing_yet(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
         LinkState::Disconnected { reason, retry_at } => {
             let seconds = retry_at.saturating_duration_since(world.now).as_secs_f32().ceil();
             let lines = vec![
-                reason.clone(),
-                format!("Start a daemon with  tracer-server serve --listen {}", status.address),
+                format::sentence(reason),
                 format!("Retrying in {seconds:.0} s; R connects now."),
             ];
             ("No connection".to_owned(), lines)
@@ -99,14 +103,24 @@ fn nothing_found(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32)
     }
 }
 
-/// A title and lines in the middle of the view.
+/// A title and lines in the middle of the view, broken where the view is too narrow for them.
 fn tell(painter: &Painter, rect: Rect, ink: Color32, title: &str, lines: Vec<String>) {
-    let centre = rect.center() - vec2(0.0, 10.0 * lines.len() as f32);
-    painter.text(centre, Align2::CENTER_BOTTOM, title, FontId::proportional(22.0), ink);
-    for (i, line) in lines.into_iter().enumerate() {
-        let place = centre + vec2(0.0, 12.0 + 21.0 * i as f32);
-        let faint = ink.gamma_multiply(0.7);
-        painter.text(place, Align2::CENTER_TOP, line, FontId::proportional(14.0), faint);
+    let faint = ink.gamma_multiply(0.7);
+    let width = (rect.width() - 2.0 * MARGIN).max(0.0);
+    let wrapped = |line| {
+        let mut job = LayoutJob::simple(line, FontId::proportional(14.0), faint, width);
+        job.halign = Align::Center;
+        painter.layout_job(job)
+    };
+    let lines: Vec<_> = lines.into_iter().map(wrapped).collect();
+    let height: f32 = lines.iter().map(|line| line.size().y + GAP).sum();
+    let mut place = rect.center() - vec2(0.0, 0.5 * height);
+    painter.text(place, Align2::CENTER_BOTTOM, title, FontId::proportional(22.0), ink);
+    place.y += 2.0 * GAP;
+    for line in lines {
+        let below = line.size().y + GAP;
+        painter.galley(place, line, faint);
+        place.y += below;
     }
 }
 

@@ -6,6 +6,7 @@ mod backlog;
 mod backoff;
 mod inbox;
 mod peer;
+mod probe;
 mod session;
 mod tls;
 
