@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant};
 
-use common::{LeaseRequest, Notice, Order, Presence, Role};
+use common::{FilterText, LeaseRequest, Notice, Order, Presence, Role};
 use proto::TracerEvent;
 use tracer_server::chain::EnsembleSettings;
 use tracer_server::daemon::{Daemon, DaemonOptions};
@@ -95,7 +95,7 @@ fn the_far_end() {
     let Ok(address) = std::env::var(ADDRESS) else { return };
     let mut viewer = Viewer::new(Status::new(address.clone(), false));
     let link = Link::start(Peer::open(address), Box::new(|_| {})).expect("a thread");
-    link.set_filter(1, FILTER.to_owned());
+    link.set_filter(1, FilterText::read(FILTER));
     viewer.set_link(link);
     let mut last = String::new();
     // No longer than the other half may take, whatever becomes of that.

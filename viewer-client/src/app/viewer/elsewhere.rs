@@ -81,7 +81,7 @@ impl Viewer {
         self.filters += 1;
         self.asked_for.clone_from(self.settings.filter.whole());
         if let Some(link) = &self.link
-            && !link.set_filter(self.filters, self.asked_for.to_string())
+            && !link.set_filter(self.filters, self.asked_for.clone())
         {
             let problem = "The filter was not sent: the daemon is busy; set it again.";
             self.status.say(Err(problem.to_owned()));

@@ -19,7 +19,7 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use common::{Appearance, Order, PathId, Role};
+use common::{Appearance, FilterText, Order, PathId, Role};
 use proto::{NumberedOrder, ReceivedScene, TracerEvent, ViewerEvent, WantedFilter};
 use tokio::sync::{Notify, mpsc};
 use tokio::task::JoinSet;
@@ -125,8 +125,8 @@ impl Link {
 
     /// Sets which paths come; blank for all. The daemon answers with a reply of the same `revision`,
     /// which must be at least 1 and grow. The filter is set again when the connection is.
-    pub fn set_filter(&self, revision: u32, text: String) -> bool {
-        self.say(ViewerEvent::SetFilter(WantedFilter { revision, text }))
+    pub fn set_filter(&self, revision: u32, filter: FilterText) -> bool {
+        self.say(ViewerEvent::SetFilter(WantedFilter { revision, filter }))
     }
 
     /// Asks for every step of the explorer, or for no more of them; also when the connection is made
