@@ -13,7 +13,7 @@ mod tree;
 
 use glam::DVec3;
 
-use super::condition::{Condition, Gap, Predicate};
+use super::condition::{Condition, Gap, Predicate, volume};
 use super::*;
 use crate::{Event, PathHeader, SceneFrame, VertexKind, VertexRecord};
 

@@ -1,8 +1,8 @@
 //! `returns within LENGTH`: the path ends near its start.
 
-use super::{Condition, Gap, Predicate};
-use crate::filter::form::{Described, Form, NumberPart, Proposal, Spot, Unit, Walk, Word};
-use crate::filter::volume::point;
+use super::volume::point;
+use super::{Condition, Described, Form, Gap, NumberPart, Predicate, Proposal, Spot, Unit};
+use crate::filter::word::{Walk, Word};
 use crate::filter::{FilterError, FilterScene};
 use crate::{PathHeader, VertexRecord};
 
