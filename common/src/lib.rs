@@ -29,7 +29,7 @@ pub use diagnostics::{Diagnostics, TileGrid, TileMaps, UNKNOWN};
 pub use event::{Event, VertexKind};
 pub use filter::condition;
 pub use filter::{
-    Attribute, Choice, CompiledFilter, Completion, Described, FilmCondition, Filter, FilterCounts,
+    Choice, CompiledFilter, Completion, Described, FilmCondition, Filter, FilterCounts,
     FilterError, FilterMaterial, FilterObject, FilterScene, FilterTally, FilterText, Form, Leaf,
     LightPathExpression, MAX_FILTER_BYTES, MAX_LEAVES, Name, NameList, NearestMiss, NumberPart,
     Place, Proposal, Selector, SelectorKind, Shortfall, Spot, Stop, Tree, Unit, VertexCheck,

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant};
 
-use common::{LeaseRequest, Notice, Order, Presence, Role, TracerEvent};
+use common::{FilterText, LeaseRequest, Notice, Order, Presence, Role, TracerEvent};
 use tracer_server::chain::EnsembleSettings;
 use tracer_server::daemon::{Daemon, DaemonOptions};
 use tracer_server::scene::Scene;
@@ -94,7 +94,7 @@ fn the_far_end() {
     let Ok(address) = std::env::var(ADDRESS) else { return };
     let mut viewer = Viewer::new(Source::daemon(address.clone(), false));
     let link = Link::start(Peer::open(address), Box::new(|_| {})).expect("a thread");
-    link.set_filter(1, FILTER.to_owned());
+    link.set_filter(1, FilterText::read(FILTER));
     viewer.set_link(link);
     let mut last = String::new();
     // No longer than the other half may take, whatever becomes of that.

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use common::{
-    CompiledFilter, Filter, FilterReply, FilterScene, Gap, PathBatch, Role, Statistics, TracerEvent,
+    CompiledFilter, Filter, FilterReply, FilterScene, FilterText, Gap, PathBatch, Role, Statistics,
+    TracerEvent,
 };
 use proto::v1::tracer_client::TracerClient;
 use proto::{Hello, ProtocolVersion, SceneAssembler, ViewerEvent, WantedFilter, v1};
@@ -45,7 +46,7 @@ impl Viewer {
     }
 
     async fn set_filter(&self, revision: u32, text: &str) {
-        let filter = WantedFilter { revision, text: text.to_owned() };
+        let filter = WantedFilter { revision, filter: FilterText::read(text) };
         self.outgoing.send(ViewerEvent::SetFilter(filter).into()).await.expect("connected");
     }
 
@@ -189,7 +190,7 @@ async fn the_daemon_counts_what_a_viewer_would_count() {
     let mut everything = Viewer::join(&daemon, None).await.expect("welcome");
     let scene = filter_scene(&mut everything).await;
     let text = "any on material fern or start through box(-100, -100, -100, 100, 100, 0)";
-    let first = WantedFilter { revision: 5, text: text.to_owned() };
+    let first = WantedFilter { revision: 5, filter: FilterText::read(text) };
     let mut selected = Viewer::join(&daemon, Some(first)).await.expect("welcome");
     let filter = compiled(text, &scene);
     let (mut by_hand, mut ranges) = (BTreeMap::new(), Vec::new());
@@ -228,7 +229,7 @@ async fn the_daemon_counts_what_a_viewer_would_count() {
 #[tokio::test]
 async fn what_is_no_filter_is_refused_with_its_place_and_harms_nothing() {
     let daemon = start();
-    let filter = |text: &str| Some(WantedFilter { revision: 1, text: text.to_owned() });
+    let filter = |text: &str| Some(WantedFilter { revision: 1, filter: FilterText::read(text) });
     let status = Viewer::join(&daemon, filter("any on material ferm")).await.map(|_| ());
     let status = status.expect_err("there is no such material");
     assert_eq!(status.code(), Code::InvalidArgument);

@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use common::{
-    ChainCommand, ExplorerCommand, FocusOutcome, FocusPath, Notice, Order, Role, Seed, SkipTo,
-    StrategyId, TracerEvent,
+    ChainCommand, ExplorerCommand, FilterText, FocusOutcome, FocusPath, Notice, Order, Role, Seed,
+    SkipTo, StrategyId, TracerEvent,
 };
 use proto::{NumberedOrder, ViewerEvent, WantedFilter};
 use tokio::task::JoinSet;
@@ -162,7 +162,10 @@ async fn churn(address: String, over: Arc<AtomicBool>, number: u32) -> u64 {
                 TracerEvent::SnapshotEnd => {
                     assert!(filtered || !came_back, "it comes back to its filter");
                     returns += u64::from(came_back);
-                    let filter = WantedFilter { revision: round + 1, text: text.clone() };
+                    let filter = WantedFilter {
+                        revision: round + 1,
+                        filter: FilterText::read(text.as_str()),
+                    };
                     assert!(session.say(ViewerEvent::SetFilter(filter)), "the daemon listens");
                 }
                 _ => {}

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use common::{
     BatchBuilder, BatchOrigin, Camera, CameraPose, ChainId, ChainTotals, Diagnostics, Event,
-    FailureCount, FilmTile, FilterCounts, FilterError, FilterObject, FilterReply, Gap,
+    FailureCount, FilmTile, FilterCounts, FilterError, FilterObject, FilterReply, FilterText, Gap,
     MAX_FILTER_BYTES, MaterialInfo, NearestMiss, PathBatch, PathHeader, PathId, Queue, Rgb, Role,
     SceneFrame, SceneMesh, Shortfall, Statistics, StrategyId, StrategyStatistics, TexturePreview,
     TileGrid, TileMaps, TracerEvent, UNKNOWN, VertexKind, VertexRecord, Welcome,
@@ -282,14 +282,14 @@ fn every_viewer_event_survives_the_wire() {
         viewer_name: "a viewer".to_owned(),
         wanted_role: Role::Driver,
         data_budget: 1 << 20,
-        filter: Some(WantedFilter { revision: 1, text: "edges > 1".to_owned() }),
+        filter: Some(WantedFilter { revision: 1, filter: FilterText::read("edges > 1") }),
         focus: true,
         resume: "0a1b".to_owned(),
     };
     for event in [
         ViewerEvent::Hello(hello),
         ViewerEvent::SetBudget(9),
-        ViewerEvent::SetFilter(WantedFilter { revision: u32::MAX, text: String::new() }),
+        ViewerEvent::SetFilter(WantedFilter { revision: u32::MAX, filter: FilterText::default() }),
         ViewerEvent::Goodbye("over".to_owned()),
         ViewerEvent::Unknown,
     ] {

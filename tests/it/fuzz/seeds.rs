@@ -3,10 +3,10 @@
 use common::{
     Appearance, Attendee, Author, ChainCommand, ChainId, ChainState, Event, ExplorerCommand,
     ExplorerState, FailureCount, FilmTile, FilterCounts, FilterError, FilterMaterial, FilterObject,
-    FilterReply, FilterScene, FocusOutcome, FocusPath, FocusStep, Gap, Gaze, LeaseEvent,
-    LeaseNotice, LeaseRequest, Notice, Order, OrderReply, PathHeader, PathId, Presence, Role,
-    SceneFrame, Seed, SkipTo, Statistics, StrategyId, StrategySet, StrategyStatistics, TracerEvent,
-    VertexKind, VertexRecord,
+    FilterReply, FilterScene, FilterText, FocusOutcome, FocusPath, FocusStep, Gap, Gaze,
+    LeaseEvent, LeaseNotice, LeaseRequest, Notice, Order, OrderReply, PathHeader, PathId, Presence,
+    Role, SceneFrame, Seed, SkipTo, Statistics, StrategyId, StrategySet, StrategyStatistics,
+    TracerEvent, VertexKind, VertexRecord,
 };
 use glam::DVec3;
 use proto::{Hello, NumberedOrder, ProtocolVersion, ViewerEvent, WantedFilter};
@@ -23,7 +23,7 @@ fn id() -> PathId {
 
 /// A message of every kind that viewers send.
 pub(super) fn viewer_events() -> Vec<ViewerEvent> {
-    let filter = WantedFilter { revision: 4, text: "edges > 2".to_owned() };
+    let filter = WantedFilter { revision: 4, filter: FilterText::read("edges > 2") };
     let hello = Hello {
         version: ProtocolVersion::CURRENT,
         viewer_name: "anna".to_owned(),

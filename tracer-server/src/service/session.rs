@@ -4,7 +4,7 @@ use std::error::Error as _;
 use std::sync::Arc;
 
 use common::{
-    CompiledFilter, DetailReply, Filter, FilterError, FilterReply, FilterScene, Notice, Order,
+    CompiledFilter, DetailReply, FilterError, FilterReply, FilterScene, FilterText, Notice, Order,
     OrderReply, PathId, Role, TracerEvent, Welcome,
 };
 use proto::v1::{TracerMessage, ViewerMessage};
@@ -38,14 +38,14 @@ pub(super) async fn handshake(inbound: &mut Streaming<ViewerMessage>) -> Result<
 
 /// Refuses a viewer whose hello asks for a filter that makes no sense.
 pub(super) fn check_filter(hello: &Hello, scene: &FilterScene) -> Result<(), Status> {
-    let Some(WantedFilter { text, .. }) = &hello.filter else { return Ok(()) };
-    understand(text, scene)
-        .map(drop)
-        .map_err(|error| Status::invalid_argument(format!("the filter:\n{}", error.pointed(text))))
+    let Some(WantedFilter { filter, .. }) = &hello.filter else { return Ok(()) };
+    understand(filter, scene).map(drop).map_err(|error| {
+        Status::invalid_argument(format!("the filter:\n{}", error.pointed(filter.text())))
+    })
 }
 
-fn understand(text: &str, scene: &FilterScene) -> Result<CompiledFilter, FilterError> {
-    Filter::parse(text)?.compile(scene)
+fn understand(filter: &FilterText, scene: &FilterScene) -> Result<CompiledFilter, FilterError> {
+    filter.tree().map_err(Clone::clone)?.compile(scene)
 }
 
 /// The status that a malformed message is answered with.
@@ -298,10 +298,10 @@ impl Session {
     }
 
     fn set_filter(&self, wanted: WantedFilter) {
-        let WantedFilter { revision, text } = wanted;
-        match understand(&text, &self.house.filter_scene) {
+        let revision = wanted.revision;
+        match understand(&wanted.filter, &self.house.filter_scene) {
             Ok(filter) => {
-                self.house.room.keep_filter(self.number(), WantedFilter { revision, text });
+                self.house.room.keep_filter(self.number(), wanted);
                 self.subscription.set_filter(revision, Arc::new(filter));
             }
             Err(error) => {

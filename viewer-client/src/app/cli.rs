@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use anyhow::{Context as _, anyhow};
 use clap::{Args, Parser, Subcommand};
-use common::{Filter, Order, PathId};
+use common::{FilterText, Order, PathId};
 
 use crate::app::share;
 use crate::command::{self, Command};
@@ -48,7 +48,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Action {
     /// Prints what a daemon sends, one line a batch of paths.
-    Watch(WatchArgs),
+    Watch(Box<WatchArgs>),
     /// Measures how fast random paths are drawn, without a window or a daemon.
     Bench(BenchArgs),
 }
@@ -110,7 +110,7 @@ pub struct WatchArgs {
     /// Which paths to show, such as `lpe "CDS+L"` or `any in sphere(0, 1, 0, 0.5)`; see
     /// docs/FILTERS.md.
     #[arg(long, value_name = "TEXT", value_parser = filter)]
-    pub filter: Option<String>,
+    pub filter: Option<FilterText>,
     /// One JSON object a line.
     #[arg(long)]
     pub json: bool,
@@ -252,11 +252,10 @@ fn address_or_link(text: &str) -> Result<String, String> {
 }
 
 /// A filter whose grammar is right; whether its names are is for the daemon to say.
-fn filter(text: &str) -> Result<String, String> {
-    match Filter::parse(text) {
-        Ok(_) => Ok(text.to_owned()),
-        Err(error) => Err(format!("\n{}", error.pointed(text))),
-    }
+fn filter(text: &str) -> Result<FilterText, String> {
+    let filter = FilterText::read(text);
+    let complaint = filter.error().map(|error| format!("\n{}", error.pointed(text)));
+    complaint.map_or(Ok(filter), Err)
 }
 
 /// One of the commands that steer.
@@ -310,7 +309,7 @@ mod tests {
         let cli = parse("viewer-client watch [::1]:50061 --json --count 3 --filter edges>3")
             .expect("watch");
         assert!(
-            matches!(cli.action, Some(Action::Watch(w)) if w.json && w.count == Some(3) && w.filter.as_deref() == Some("edges>3")),
+            matches!(cli.action, Some(Action::Watch(w)) if w.json && w.count == Some(3) && w.filter == Some(FilterText::read("edges>3"))),
             "w"
         );
     }

@@ -120,7 +120,7 @@ impl Daemon {
         self.wanted.revision += 1;
         self.wanted.filter.clone_from(filter);
         let link = self.link.as_ref();
-        link.is_none_or(|link| link.set_filter(self.wanted.revision, filter.to_string()))
+        link.is_none_or(|link| link.set_filter(self.wanted.revision, filter.clone()))
     }
 
     /// The daemon follows a filter from now on, or refuses it.

@@ -26,7 +26,7 @@ pub fn run(args: &WatchArgs) -> anyhow::Result<()> {
 }
 
 async fn watch(args: &WatchArgs) -> anyhow::Result<()> {
-    let filter = args.filter.clone().map(|text| WantedFilter { revision: 1, text });
+    let filter = args.filter.clone().map(|filter| WantedFilter { revision: 1, filter });
     let peer = args.trust.peer(args.address.clone())?;
     let role = if args.order.is_empty() { Role::Observer } else { Role::Driver };
     let name = own_name("Lvis watch");

@@ -263,22 +263,27 @@ fn joined_tests(
 ) -> bool {
     let mut changed = false;
     let mut gone = None;
-    for (index, part) in parts.iter_mut().enumerate() {
-        ui.push_id(index, |ui| {
-            if index > 0 {
-                let word = if *either { "or" } else { "and" };
-                let tip = "At the same vertex; a click changes between and, or";
-                if ui.small_button(word).on_hover_text(tip).clicked() {
-                    *either = !*either;
-                    changed = true;
-                }
+    let mut test = |ui: &mut Ui, index: usize, part: &mut VertexTest| {
+        if index > 0 {
+            let word = if *either { "or" } else { "and" };
+            let tip = "At the same vertex; a click changes between and, or";
+            if ui.small_button(word).on_hover_text(tip).clicked() {
+                *either = !*either;
+                changed = true;
             }
-            changed |= edit::edit_test(ui, part, context);
-            if ui.small_button("×").on_hover_text("Take this test away").clicked() {
-                gone = Some(index);
-            }
-        });
-    }
+        }
+        changed |= edit::edit_test(ui, part, context);
+        if ui.small_button("×").on_hover_text("Take this test away").clicked() {
+            gone = Some(index);
+        }
+    };
+    // Each begins at the left: what wraps in the middle of a line has no room to go on.
+    ui.end_row();
+    ui.vertical(|ui| {
+        for (index, part) in parts.iter_mut().enumerate() {
+            ui.push_id(index, |ui| ui.horizontal_wrapped(|ui| test(ui, index, part)));
+        }
+    });
     if let Some(index) = gone {
         parts.remove(index);
     }

@@ -21,7 +21,7 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use common::{Appearance, Order, PathId, Role, TracerEvent};
+use common::{Appearance, FilterText, Order, PathId, Role, TracerEvent};
 use proto::{NumberedOrder, ReceivedScene, ViewerEvent, WantedFilter};
 use tokio::sync::{Notify, mpsc};
 use tokio::task::JoinSet;
@@ -123,8 +123,8 @@ impl Link {
     /// Sets which paths come; blank for all. The daemon answers with a reply of the same `revision`,
     /// which must be at least 1 and grow. It must be set again when the connection is: a daemon that
     /// comes back may have a scene that cannot read it.
-    pub fn set_filter(&self, revision: u32, text: String) -> bool {
-        self.say(ViewerEvent::SetFilter(WantedFilter { revision, text }))
+    pub fn set_filter(&self, revision: u32, filter: FilterText) -> bool {
+        self.say(ViewerEvent::SetFilter(WantedFilter { revision, filter }))
     }
 
     /// Asks for every step of the explorer, or for no more of them; also when the connection is made

@@ -2,8 +2,9 @@
 
 use glam::{DVec3, Vec3};
 
-use super::form::{Described, Form, NumberPart, Spot, Unit, Walk, choose, words};
-use super::{FilterError, MARGIN};
+use super::{Described, Form, NumberPart, Spot, Unit, choose};
+use crate::filter::word::{Walk, words};
+use crate::filter::{FilterError, MARGIN};
 use crate::{SceneFrame, VertexRecord};
 
 /// Steps of the search for the point of a segment that is nearest to a box; each leaves two thirds.
@@ -229,7 +230,7 @@ impl Volume {
 
 /// The point at which a vertex lies, in scene units.
 #[inline]
-pub(super) fn point(vertex: &VertexRecord) -> DVec3 {
+pub(in crate::filter) fn point(vertex: &VertexRecord) -> DVec3 {
     Vec3::from_array(vertex.position).as_dvec3()
 }
 

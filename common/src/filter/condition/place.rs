@@ -1,6 +1,6 @@
 //! Which vertices or segments of a path a condition is about.
 
-use super::form::words;
+use crate::filter::word::words;
 
 words! {
     /// Which vertices or segments of a path a condition is about.

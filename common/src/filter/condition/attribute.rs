@@ -1,8 +1,7 @@
 //! Numbers that a path can be asked for. To add one: its word and an arm in each `match` below.
 
-use crate::filter::condition::number::Comparison;
-use crate::filter::form::words;
-use crate::filter::volume::point;
+use super::volume::point;
+use crate::filter::word::words;
 use crate::{Event, PathHeader, SceneFrame, VertexKind, VertexRecord};
 
 words! {
@@ -19,6 +18,18 @@ words! {
         Diffuse = "diffuse", "vertices that scatter diffusely";
         Glossy = "glossy", "vertices that scatter glossily";
         Specular = "specular", "vertices on mirrors and clear glass";
+    }
+}
+
+words! {
+    /// How a number compares.
+    pub enum Comparison: "How it compares" {
+        AtLeast = ">=", "at least";
+        AtMost = "<=", "at most";
+        Equal = "==" or "=", "exactly";
+        Greater = ">", "more than";
+        Less = "<", "less than";
+        NotEqual = "!=", "anything but";
     }
 }
 
@@ -94,6 +105,21 @@ impl Attribute {
     #[inline]
     pub(super) fn rounded(self, value: f64) -> f64 {
         if self.is_whole() { value } else { f64::from(value as f32) }
+    }
+}
+
+impl Comparison {
+    /// Whether `a` compares so to `b`.
+    #[inline]
+    pub(super) fn holds(self, a: f64, b: f64) -> bool {
+        match self {
+            Self::Equal => a == b,
+            Self::NotEqual => a != b,
+            Self::Less => a < b,
+            Self::AtMost => a <= b,
+            Self::Greater => a > b,
+            Self::AtLeast => a >= b,
+        }
     }
 }
 
