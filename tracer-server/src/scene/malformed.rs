@@ -1,5 +1,6 @@
 //! Bad input of every kind: each must give a message that names file, place and remedy.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
@@ -258,8 +259,8 @@ fn materials_may_be_called_anything() {
     let mut mtl = String::from("# made by hand\n");
     let mut obj = String::from("mtllib part #1.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
     for name in names {
-        mtl += &format!("newmtl {name}\nKd 0.5 0.5 0.5 # grey\nKe 1 1 1\n");
-        obj += &format!("usemtl {name}\nf 1 2 3 # a face\n");
+        writeln!(mtl, "newmtl {name}\nKd 0.5 0.5 0.5 # grey\nKe 1 1 1").expect("a string");
+        writeln!(obj, "usemtl {name}\nf 1 2 3 # a face").expect("a string");
     }
     // A comment behind a name is none of it where another name fits only so.
     mtl += "newmtl red # shiny\nKd 1 0 0\n";
