@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use common::Event;
 use glam::DVec3;
 
-use super::{Bsdf, Scatter as _, Scattering};
+use super::{Bsdf, Scattering};
 use crate::math::Rng;
 
 /// A scattering model at a point of a surface.

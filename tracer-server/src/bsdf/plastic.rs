@@ -6,7 +6,11 @@ use common::{Event, Rgb};
 use glam::DVec3;
 
 use super::conductor::facing;
-use super::{Fresnel, Scatter, Scattering, reflect};
+#[cfg(test)]
+use super::laws::Specimens;
+use super::mitsuba;
+use super::model::{ColorInput, Given, Inputs, Model, NumberInput, Parameter, Range, Value};
+use super::{Bsdf, Fresnel, Ggx, RoughPlastic, Scatter, Scattering, reflect};
 use crate::math::{Rng, below_one, cosine_hemisphere, invert_cosine_hemisphere};
 
 /// A coat that mirrors by its Fresnel reflectance, and lets the rest pass to a diffuse base and
@@ -59,7 +63,7 @@ pub(super) fn untinted(fresnel: Fresnel) -> Fresnel {
 ///
 /// Every reflection from below the coat tints the light once more: `color (1 - R) / (1 - color R)`
 /// with the diffuse reflectance `R` of the coat from below.
-pub fn deepened(color: Rgb, eta: f64) -> Rgb {
+fn deepened(color: Rgb, eta: f64) -> Rgb {
     let outside = Fresnel::Dielectric { eta, tint: Rgb::WHITE }.mean().g;
     // The same light passes a boundary both ways [Egan et al. 1973].
     let inside = 1.0 - (1.0 - outside) / (eta * eta);
@@ -68,6 +72,9 @@ pub fn deepened(color: Rgb, eta: f64) -> Rgb {
 }
 
 impl Scatter for Plastic {
+    const NAME: &'static str = "plastic";
+    const HAS_DIRAC_LOBE: bool = true;
+
     fn sample(&self, n: DVec3, w: DVec3, [choice, u, v]: [f64; 3]) -> Option<(DVec3, Event)> {
         if choice < self.mirrored(n.dot(w).abs()) {
             return Some((reflect(n, w), Event::Reflect));
@@ -134,5 +141,151 @@ impl Scatter for Plastic {
     fn albedo(&self) -> f64 {
         let coat = self.fresnel.at(1.0);
         (coat + self.diffuse * self.pass(1.0)).max_channel()
+    }
+
+    fn preview_color(&self) -> Rgb {
+        self.diffuse
+    }
+}
+
+/// Paint under a transparent coat as its author describes it: a [`Plastic`], or a [`RoughPlastic`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlasticDescription {
+    /// Albedo of the base, each channel in [0, 1].
+    pub diffuse: ColorInput,
+    /// What the coat, or a facet of it, reflects.
+    pub fresnel: Fresnel,
+    /// Roughness of the coat: alpha of GGX, in [0, 1]; 0 is smooth.
+    pub roughness: f64,
+    /// True when light that goes to and fro between a dielectric coat and the base takes on
+    /// its colour each time, false when `diffuse` is the colour as seen through the coat.
+    pub nonlinear: bool,
+}
+
+impl PlasticDescription {
+    /// The colour of the base as seen through the coat.
+    fn base(&self, inputs: &impl Inputs) -> Rgb {
+        let color = inputs.color(self.diffuse);
+        match self.fresnel {
+            Fresnel::Dielectric { eta, .. } if self.nonlinear => deepened(color, eta),
+            Fresnel::Dielectric { .. }
+            | Fresnel::Constant(_)
+            | Fresnel::Schlick(_)
+            | Fresnel::Conductor { .. } => color,
+        }
+    }
+}
+
+impl Model for PlasticDescription {
+    const NAME: &'static str = "plastic";
+    const ABOUT: &'static str = "diffuse paint under a transparent coat";
+    const PARAMETERS: &'static [Parameter] = &[
+        Parameter {
+            name: "reflectance",
+            about: "albedo of the paint, in [0, 1]: a number, [r, g, b] or a texture; needed",
+        },
+        Parameter { name: "eta", about: "index of refraction of the coat; default 1.5" },
+        Parameter {
+            name: "specular",
+            about: "in place of eta: what the coat reflects at normal incidence, in [0, 1], and \
+                    more at other angles by Schlick's approximation",
+        },
+        Parameter {
+            name: "roughness",
+            about: "alpha of GGX in [0, 1], a number; default 0, smooth",
+        },
+        Parameter {
+            name: "nonlinear",
+            about: "true when light that goes to and fro below the coat takes on the paint's \
+                    colour each time; default false",
+        },
+    ];
+    const PLUGINS: &'static [&'static str] = &["plastic", "roughplastic"];
+
+    fn read<G: Given>(given: &mut G) -> Result<Self, G::Error> {
+        let fresnel = match (given.color("specular")?, given.number("eta")?) {
+            (Some(_), Some(_)) => {
+                return Err(given.error("specular", "give either specular or eta for a coat"));
+            }
+            (Some(specular), None) => Fresnel::Schlick(specular),
+            (None, eta) => Fresnel::Dielectric { eta: eta.unwrap_or(1.5), tint: Rgb::WHITE },
+        };
+        Ok(Self {
+            diffuse: given.needed_color_input("reflectance")?,
+            fresnel,
+            roughness: given.number("roughness")?.unwrap_or(0.0),
+            nonlinear: given.flag("nonlinear")?,
+        })
+    }
+
+    fn read_plugin<G: Given>(plugin: &str, given: &mut G) -> Result<Self, G::Error> {
+        let roughness = match plugin {
+            "roughplastic" => match mitsuba::roughness(given)? {
+                NumberInput::Constant(roughness) => roughness,
+                NumberInput::Texture { .. } => {
+                    given.warn("the roughness of a coat reads no texture: 0.1 is used");
+                    mitsuba::ROUGHNESS
+                }
+            },
+            _ => 0.0,
+        };
+        let inside = mitsuba::index(given, "int_ior", "polypropylene")?;
+        let eta = inside / mitsuba::index(given, "ext_ior", "air")?;
+        let tint = given.color("specular_reflectance")?.unwrap_or(Rgb::WHITE);
+        let diffuse = given.color_input("diffuse_reflectance")?;
+        Ok(Self {
+            diffuse: diffuse.unwrap_or(mitsuba::REFLECTANCE),
+            fresnel: Fresnel::Dielectric { eta, tint },
+            roughness,
+            nonlinear: given.flag("nonlinear")?,
+        })
+    }
+
+    fn parameters(&mut self, see: &mut dyn FnMut(&'static str, Value<'_>)) {
+        see("reflectance", Value::ShareInput(&mut self.diffuse));
+        self.fresnel.parameters(see);
+        see("roughness", Value::Number(&mut self.roughness, Range::ROUGHNESS));
+        see("nonlinear", Value::Flag(&mut self.nonlinear));
+    }
+
+    fn build(&self, inputs: &impl Inputs) -> Bsdf {
+        let base = self.base(inputs);
+        if NumberInput::Constant(self.roughness).is_smooth() {
+            return Bsdf::Plastic(Plastic::new(base, self.fresnel));
+        }
+        Bsdf::RoughPlastic(RoughPlastic::new(base, self.fresnel, Ggx::new(self.roughness)))
+    }
+
+    /// The coat, whose albedo is an integral, stays as it is.
+    fn rebuild(&self, built: &Bsdf, inputs: &impl Inputs) -> Bsdf {
+        let diffuse = self.base(inputs);
+        match *built {
+            Bsdf::Plastic(plastic) => Bsdf::Plastic(Plastic { diffuse, ..plastic }),
+            Bsdf::RoughPlastic(plastic) => Bsdf::RoughPlastic(plastic.painted(diffuse)),
+            _ => self.build(inputs),
+        }
+    }
+}
+
+#[cfg(test)]
+impl Specimens for Plastic {
+    const MARGIN: f64 = 1e-3;
+
+    fn specimens() -> Vec<(&'static str, Self)> {
+        let tinted = Fresnel::Dielectric { eta: 1.3, tint: Rgb::new(0.5, 0.4, 0.9) };
+        vec![
+            ("plastic", Self::new(Rgb::new(0.8, 0.2, 0.05), Fresnel::COAT)),
+            ("white plastic", Self::new(Rgb::WHITE, Fresnel::COAT)),
+            ("tinted coat", Self::new(Rgb::new(0.8, 0.2, 0.05), tinted)),
+            ("black glass", Self::new(Rgb::BLACK, Fresnel::COAT)),
+        ]
+    }
+
+    fn samplers(event: Event) -> u32 {
+        u32::from(event == Event::Diffuse)
+    }
+
+    fn scatters(&self, _: f64) -> Option<Rgb> {
+        (self.diffuse == Rgb::WHITE).then_some(Rgb::WHITE)
     }
 }

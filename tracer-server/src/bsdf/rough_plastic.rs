@@ -6,6 +6,8 @@ use common::{Event, Rgb};
 use glam::DVec3;
 
 use super::conductor::facing;
+#[cfg(test)]
+use super::laws::Specimens;
 use super::plastic::untinted;
 use super::{Fresnel, Ggx, Scatter, Scattering, reflect};
 use crate::math::{Rng, below_one, cosine_hemisphere, invert_cosine_hemisphere};
@@ -88,6 +90,11 @@ impl RoughPlastic {
         Self { diffuse, fresnel, facets, coat }
     }
 
+    /// The same coat over a base of another colour.
+    pub(super) fn painted(self, diffuse: Rgb) -> Self {
+        Self { diffuse, ..self }
+    }
+
     /// The probability that a walk that arrives at an angle samples the coat.
     #[inline]
     fn coated(&self, cosine: f64) -> f64 {
@@ -116,6 +123,8 @@ impl RoughPlastic {
 }
 
 impl Scatter for RoughPlastic {
+    const NAME: &'static str = "rough plastic";
+
     fn sample(&self, n: DVec3, w: DVec3, [choice, u, v]: [f64; 3]) -> Option<(DVec3, Event)> {
         let frame = facing(n, w);
         let local = frame.to_local(w);
@@ -183,6 +192,36 @@ impl Scatter for RoughPlastic {
         let coat = self.fresnel.at(1.0);
         let passed = 1.0 - self.coat.at(1.0);
         (coat + self.diffuse * passed).max_channel().min(1.0)
+    }
+
+    fn preview_color(&self) -> Rgb {
+        self.diffuse
+    }
+}
+
+#[cfg(test)]
+impl Specimens for RoughPlastic {
+    const MARGIN: f64 = 5e-3;
+
+    fn specimens() -> Vec<(&'static str, Self)> {
+        let red = Rgb::new(0.8, 0.2, 0.05);
+        let paint = |diffuse, fresnel, alpha| Self::new(diffuse, fresnel, Ggx::new(alpha));
+        let tinted = Fresnel::Dielectric { eta: 1.3, tint: Rgb::new(0.5, 0.4, 0.9) };
+        vec![
+            ("rough plastic", paint(red, Fresnel::COAT, 0.1)),
+            ("white rough plastic", paint(Rgb::WHITE, Fresnel::COAT, 0.4)),
+            ("phong", paint(red, Fresnel::Schlick(Rgb::new(0.5, 0.4, 0.3)), 0.2)),
+            ("rough tinted coat", paint(red, tinted, 0.6)),
+        ]
+    }
+
+    /// The coat and the base.
+    fn samplers(_: Event) -> u32 {
+        2
+    }
+
+    fn scatters(&self, _: f64) -> Option<Rgb> {
+        (self.diffuse == Rgb::WHITE).then_some(Rgb::WHITE)
     }
 }
 

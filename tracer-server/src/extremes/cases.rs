@@ -4,12 +4,12 @@ use common::Rgb;
 use glam::{DMat3, DVec3};
 
 use super::{Expected, Extreme, SIDE, check_all, like, row};
-use crate::bsdf::Fresnel;
+use crate::bsdf::{
+    BsdfDescription, ConductorDescription, DielectricDescription, Fresnel, MirrorDescription,
+};
 use crate::integrator::laws::{BLACK, bidirectional, furnace, lit_by_sphere, sphere_over_plane};
 use crate::scene::fixtures::{Fixture, MIRROR, coated_room, diffuse_room, lambert, specular_room};
-use crate::scene::{BsdfDescription, Glow, Mesh, SkyImage};
-
-const CLEAR: Rgb = Rgb::WHITE;
+use crate::scene::{Glow, Mesh, SkyImage};
 
 fn small(fixture: Fixture) -> Fixture {
     fixture.film(SIDE, SIDE).max_edges(5)
@@ -141,7 +141,7 @@ fn ball_in_glow(bsdf: BsdfDescription, origin: DVec3, edges: usize) -> Fixture {
 }
 
 fn clear(eta: f64) -> BsdfDescription {
-    BsdfDescription::Dielectric { eta, reflectance: CLEAR, transmittance: CLEAR }
+    BsdfDescription::from(DielectricDescription::clear(eta))
 }
 
 /// The room with its mirror ball of another material.
@@ -153,13 +153,13 @@ fn ball_of(bsdf: BsdfDescription) -> Fixture {
 }
 
 fn rough_mirror(roughness: f64) -> BsdfDescription {
-    let BsdfDescription::Mirror { reflectance } = MIRROR else {
+    let BsdfDescription::Mirror(MirrorDescription { reflectance }) = MIRROR else {
         unreachable!("it is a mirror");
     };
-    BsdfDescription::Conductor {
+    BsdfDescription::Conductor(ConductorDescription {
         fresnel: Fresnel::Constant(reflectance),
         roughness: roughness.into(),
-    }
+    })
 }
 
 #[test]

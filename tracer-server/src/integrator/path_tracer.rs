@@ -6,7 +6,6 @@
 use common::Rgb;
 use glam::{DVec2, DVec3};
 
-use crate::bsdf::Scatter as _;
 use crate::film::Film;
 use crate::math::{Rng, Stream};
 use crate::parallel;

@@ -5,12 +5,14 @@ use common::Rgb;
 use glam::{DMat3, DVec3};
 
 use super::{KINDS, Mixture, MixtureBasis, StrategyOptions};
-use crate::bsdf::Fresnel;
+use crate::bsdf::{
+    BsdfDescription, ConductorDescription, DielectricDescription, Fresnel, PlasticDescription,
+};
 use crate::chain::{Ensemble, EnsembleSettings};
 use crate::math::{Rng, Stream, uniform_sphere};
 use crate::path::{Aim, BidirectionalSampler, Draft, Path};
 use crate::scene::fixtures::{Fixture, MIRROR, lambert};
-use crate::scene::{BsdfDescription, Glow, Scene, Tracer};
+use crate::scene::{Glow, Scene, Tracer};
 
 const SCENES: u64 = 60;
 /// Proposals of each strategy on each scene.
@@ -40,24 +42,19 @@ fn material(rng: &mut Rng) -> BsdfDescription {
         _ => Fresnel::Conductor { eta: color(rng), k: color(rng) * 5.0, tint: Rgb::WHITE },
     };
     let (reflectance, transmittance) = (color(rng), color(rng));
+    let glass = |roughness: f64| {
+        let roughness = roughness.into();
+        DielectricDescription { eta, reflectance, transmittance, roughness }.into()
+    };
     match rng.below(7) {
         0 => MIRROR,
-        1 => BsdfDescription::Dielectric { eta, reflectance, transmittance },
-        2 => BsdfDescription::RoughDielectric {
-            eta,
-            reflectance,
-            transmittance,
-            roughness: roughness.into(),
-        },
-        3 => BsdfDescription::Conductor { fresnel, roughness: roughness.into() },
+        1 => glass(0.0),
+        2 => glass(roughness),
+        3 => ConductorDescription { fresnel, roughness: roughness.into() }.into(),
         4 => {
             let roughness = if rng.below(2) == 0 { 0.0 } else { roughness };
-            BsdfDescription::Plastic {
-                diffuse: reflectance.into(),
-                fresnel,
-                roughness,
-                nonlinear: false,
-            }
+            PlasticDescription { diffuse: reflectance.into(), fresnel, roughness, nonlinear: false }
+                .into()
         }
         _ => lambert(reflectance.r, reflectance.g, reflectance.b),
     }

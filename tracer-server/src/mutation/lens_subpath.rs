@@ -5,7 +5,7 @@ use common::Event;
 use glam::{DVec2, DVec3};
 
 use super::{MixtureBasis, Mutation, Tuning};
-use crate::bsdf::{Local, Scatter as _};
+use crate::bsdf::Local;
 use crate::math::Rng;
 use crate::path::{
     Aim, Draft, Failure, Path, Splice, Vertex, extend, open_for_connection, scatter,

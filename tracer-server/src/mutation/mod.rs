@@ -2,7 +2,7 @@
 //!
 //! To add one: write its file with an `impl Mutation`, declare the module, and add a line to the
 //! list in `strategies!` below: weights, options, tables and checks follow from it.
-//! `docs/ADD_A_MUTATION.md` walks through it.
+//! `docs/EXTEND.md` walks through it.
 
 mod bidirectional;
 mod caustic;

@@ -6,7 +6,6 @@ use glam::DVec2;
 use super::resample::{end_on_light, open_for_connection};
 use super::walk::{Aim, emit, extend, light_vertex, scatter};
 use super::{MAX_VERTICES, Numbers, Path, ROW, Splice, Strand, Vertex, Vertices};
-use crate::bsdf::Scatter as _;
 use crate::scene::Tracer;
 
 /// Vertices of a subpath that are made before Russian roulette begins.

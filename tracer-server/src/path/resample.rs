@@ -4,7 +4,6 @@ use glam::{DVec2, DVec3};
 
 use super::walk::{Aim, emit, light_vertex, scatter, walk};
 use super::{Failure, Numbers, Path, Splice, Strand, Vertex, Vertices};
-use crate::bsdf::Scatter as _;
 use crate::scene::Tracer;
 
 /// Which vertices are deleted and how many are made from each side.

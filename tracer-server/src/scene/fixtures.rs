@@ -8,10 +8,12 @@ use common::{CameraPose, Rgb};
 use glam::{DMat3, DVec3, Vec3, Vec3Swizzles as _};
 
 use super::{
-    BsdfDescription, ColorInput, Glow, LightDescription, Material, Mesh, Scene, SceneDescription,
-    SkyImage, Sphere, ThinLens,
+    Glow, LightDescription, Material, Mesh, Scene, SceneDescription, SkyImage, Sphere, ThinLens,
 };
-use crate::bsdf::Fresnel;
+use crate::bsdf::{
+    BsdfDescription, ColorInput, ConductorDescription, DielectricDescription, Fresnel,
+    LambertDescription, MirrorDescription, PlasticDescription,
+};
 
 /// Builds descriptions shape by shape.
 #[derive(Clone, Debug)]
@@ -20,17 +22,18 @@ pub(crate) struct Fixture {
 }
 
 pub(crate) const fn lambert(r: f64, g: f64, b: f64) -> BsdfDescription {
-    BsdfDescription::Lambert { reflectance: ColorInput::Constant(Rgb::new(r, g, b)) }
+    BsdfDescription::Lambert(LambertDescription {
+        reflectance: ColorInput::Constant(Rgb::new(r, g, b)),
+    })
 }
 
 pub(crate) const MIRROR: BsdfDescription =
-    BsdfDescription::Mirror { reflectance: Rgb::new(0.9, 0.85, 0.8) };
+    BsdfDescription::Mirror(MirrorDescription { reflectance: Rgb::new(0.9, 0.85, 0.8) });
 
-pub(crate) const GLASS: BsdfDescription = BsdfDescription::Dielectric {
-    eta: 1.5,
-    reflectance: Rgb::WHITE,
+pub(crate) const GLASS: BsdfDescription = BsdfDescription::Dielectric(DielectricDescription {
     transmittance: Rgb::new(0.95, 1.0, 0.9),
-};
+    ..DielectricDescription::clear(1.5)
+});
 
 impl Fixture {
     /// An empty scene with a camera at `origin` that looks at `target`.
@@ -191,28 +194,30 @@ pub(crate) fn saturated_room() -> Fixture {
 /// rough metal and of rough glass.
 pub(crate) fn coated_room() -> Fixture {
     let coat = Fresnel::Dielectric { eta: 1.5, tint: Rgb::WHITE };
-    let paint = |r, g, b, roughness| BsdfDescription::Plastic {
-        diffuse: Rgb::new(r, g, b).into(),
-        fresnel: coat,
-        roughness,
-        nonlinear: false,
+    let paint = |r, g, b, roughness| {
+        BsdfDescription::Plastic(PlasticDescription {
+            diffuse: Rgb::new(r, g, b).into(),
+            fresnel: coat,
+            roughness,
+            nonlinear: false,
+        })
     };
-    let lacquer = BsdfDescription::Plastic {
+    let lacquer = BsdfDescription::Plastic(PlasticDescription {
         diffuse: Rgb::new(0.5, 0.4, 0.2).into(),
         fresnel: Fresnel::Schlick(Rgb::grey(0.3)),
         roughness: 0.0,
         nonlinear: false,
-    };
-    let steel = BsdfDescription::Conductor {
+    });
+    let steel = BsdfDescription::Conductor(ConductorDescription {
         fresnel: Fresnel::Schlick(Rgb::new(0.9, 0.7, 0.5)),
         roughness: 0.3.into(),
-    };
-    let frosted = BsdfDescription::RoughDielectric {
+    });
+    let frosted = BsdfDescription::Dielectric(DielectricDescription {
         eta: 1.5,
         reflectance: Rgb::WHITE,
         transmittance: Rgb::new(0.9, 1.0, 0.8),
         roughness: 0.25.into(),
-    };
+    });
     let walls =
         [paint(0.7, 0.2, 0.1, 0.2), GREEN, lacquer, WHITE, paint(0.7, 0.7, 0.6, 0.0), WHITE];
     Fixture::new(DVec3::new(0.1, 0.0, 0.95), DVec3::new(0.0, -0.1, -1.0), 70.0)
@@ -291,11 +296,7 @@ pub(crate) fn wall_in_a_pane() -> Fixture {
 /// A slab of dense glass between a wide lamp and a diffuse floor; the camera looks through the
 /// slab at many angles, or from below it.
 pub(crate) fn slab_over_floor(through: bool) -> Fixture {
-    let dense = BsdfDescription::Dielectric {
-        eta: 2.4,
-        reflectance: Rgb::WHITE,
-        transmittance: Rgb::WHITE,
-    };
+    let dense = BsdfDescription::from(DielectricDescription::clear(2.4));
     let (origin, target) = if through {
         (DVec3::new(0.3, 1.2, 1.6), DVec3::new(0.0, 0.5, 0.3))
     } else {

@@ -7,6 +7,7 @@ use glam::{DMat3, DVec3};
 use serde::Deserialize;
 
 use super::material::Color;
+use crate::scene::description::check::Fault;
 use crate::scene::description::{Glow, LightDescription};
 use crate::scene::reading::image::read_sky;
 use crate::scene::reading::shape::Rotation;
@@ -81,7 +82,7 @@ struct EnvironmentEntry {
 
 impl LightEntry {
     /// The light, or the field that is amiss. Reads the image that it names, relative to `folder`.
-    pub(crate) fn light(&self, folder: &Path) -> Result<LightDescription, (&'static str, String)> {
+    pub(crate) fn light(&self, folder: &Path) -> Result<LightDescription, Fault> {
         let glow = match (self.point, self.spot, self.directional, &self.environment) {
             (Some(point), None, None, None) => {
                 Glow::Point { position: point.position, intensity: point.intensity.into() }
@@ -99,7 +100,7 @@ impl LightEntry {
             (None, None, None, Some(environment)) => environment.glow(folder)?,
             _ => {
                 let message = "give exactly one of point, spot, directional or environment";
-                return Err(("name", message.to_owned()));
+                return Err(Fault::new("name", message));
             }
         };
         Ok(LightDescription { name: self.name.clone(), glow })
@@ -107,16 +108,16 @@ impl LightEntry {
 }
 
 impl EnvironmentEntry {
-    fn glow(&self, folder: &Path) -> Result<Glow, (&'static str, String)> {
+    fn glow(&self, folder: &Path) -> Result<Glow, Fault> {
         let image = self.image.as_ref().map(|name| read_sky(&folder.join(name))).transpose();
         let mut rotation = DMat3::IDENTITY;
         for turn in &self.rotate {
             rotation =
-                turn.matrix().map_err(|message| ("environment", message.to_owned()))? * rotation;
+                turn.matrix().map_err(|message| Fault::new("environment", message))? * rotation;
         }
         Ok(Glow::Environment {
             radiance: self.radiance.map_or(Rgb::WHITE, Rgb::from),
-            image: image.map_err(|message| ("environment", message))?,
+            image: image.map_err(|message| Fault::new("environment", message))?,
             rotation,
         })
     }

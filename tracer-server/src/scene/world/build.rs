@@ -7,7 +7,6 @@ use glam::DVec3;
 use thiserror::Error;
 
 use super::accel::{Accel, Anchor};
-use super::appearance::surface;
 use super::corners::Corners;
 use super::emitter::Emitters;
 use super::lamp::{Bounds, Cone, Lamp};
@@ -103,7 +102,7 @@ impl Scene {
         let surfaces: Vec<SurfaceMaterial> = description
             .materials
             .iter()
-            .map(|m| surface(description, m, 1.0 / radiance_scale))
+            .map(|m| SurfaceMaterial::new(description, m, 1.0 / radiance_scale))
             .collect();
         let used = used_surfaces(&materials, &surfaces);
         let features =

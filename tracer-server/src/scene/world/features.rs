@@ -45,7 +45,7 @@ impl SceneFeatures {
             specular: used.iter().any(|surface| surface.bsdf.has_dirac_lobe()),
             spheres: spheres > 0,
             shading_normals,
-            textures: used.iter().any(|surface| surface.paint.is_some()),
+            textures: used.iter().any(|surface| surface.textured.is_some()),
             one_sided: used.iter().any(|surface| surface.one_sided),
             environment,
             hittable: environment || !lights.list().is_empty(),

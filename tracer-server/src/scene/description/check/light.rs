@@ -20,8 +20,7 @@ pub(crate) fn check_lights(scene: &SceneDescription) -> Result<(), Problem> {
         return Err(Problem::new(Part::Scene, "lights", message));
     }
     for (index, light) in scene.lights.iter().enumerate() {
-        check_glow(&light.glow)
-            .map_err(|(field, message)| Problem::new(Part::Light(index), field, message))?;
+        check_glow(&light.glow).map_err(|fault| fault.of(Part::Light(index)))?;
     }
     Ok(())
 }
@@ -34,20 +33,22 @@ fn check_glow(glow: &Glow) -> Result<(), Fault> {
     };
     check_emission("", glow.color())?;
     match glow {
-        Glow::Point { position, .. } => check_point(*position).map_err(|m| ("point", m)),
+        Glow::Point { position, .. } => check_point(*position).map_err(|m| Fault::new("point", m)),
         Glow::Spot { position, direction, cutoff, beam, .. } => {
-            check_point(*position).map_err(|m| ("spot", m))?;
-            heading(*direction).map_err(|m| ("spot", m))?;
+            check_point(*position).map_err(|m| Fault::new("spot", m))?;
+            heading(*direction).map_err(|m| Fault::new("spot", m))?;
             if !(*cutoff > 0.0 && *cutoff <= 180.0 && *beam >= 0.0 && beam <= cutoff) {
                 let message = format!(
                     "cutoff {cutoff} must lie above 0 and up to 180 degrees, beam {beam} between 0 \
                      and cutoff"
                 );
-                return Err(("spot", message));
+                return Err(Fault::new("spot", message));
             }
             Ok(())
         }
-        Glow::Directional { direction, .. } => heading(*direction).map_err(|m| ("directional", m)),
+        Glow::Directional { direction, .. } => {
+            heading(*direction).map_err(|m| Fault::new("directional", m))
+        }
         Glow::Environment { image, .. } => {
             let sound = |texel: &[f32; 3]| texel.iter().all(|c| c.is_finite() && *c >= 0.0);
             let bad = image.as_ref().and_then(|i| i.texels.iter().position(|texel| !sound(texel)));
@@ -59,7 +60,7 @@ fn check_glow(glow: &Glow) -> Result<(), Fault> {
                          negative",
                         image.texels[at]
                     );
-                    Err(("environment", message))
+                    Err(Fault::new("environment", message))
                 }
                 _ => Ok(()),
             }
