@@ -1,8 +1,40 @@
 //! Spreading work over threads without making the result depend on them.
 
 use std::ops::Range;
-use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 use std::thread;
+
+/// Tells workers to leave what is not done yet; clones share it, and it is never taken back.
+///
+/// Workers look at it between pieces of work, so that work that was not stopped has the same bits as
+/// work that nobody could have stopped.
+#[derive(Clone, Debug, Default)]
+pub struct Stop(Arc<AtomicBool>);
+
+impl Stop {
+    /// Tells everyone.
+    pub fn set(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// True from the first [`Stop::set`] on.
+    pub fn is_set(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    /// Does `work` so many `times` unless it is told to stop before; returns how often it was done.
+    pub fn repeat(&self, times: u64, mut work: impl FnMut()) -> u64 {
+        const BETWEEN_LOOKS: u64 = 1024;
+        let mut done = 0;
+        while done < times && !self.is_set() {
+            let now = BETWEEN_LOOKS.min(times - done);
+            (0..now).for_each(|_| work());
+            done += now;
+        }
+        done
+    }
+}
 
 /// What `work` makes of the numbers in `range`, in their order, by `threads` workers that each have
 /// a state made by `start`.

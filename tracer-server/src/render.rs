@@ -9,6 +9,7 @@ use crate::chain::{ChainStatistics, Ensemble, EnsembleSettings, Prospect};
 use crate::film::Film;
 use crate::integrator::pssmlt::{PrimaryEnsemble, PrimarySettings, STEPS};
 use crate::integrator::{BidirectionalTracer, PathTracer};
+use crate::parallel::Stop;
 use crate::path::Failure;
 use crate::scene::{RayCounts, Scene};
 
@@ -96,6 +97,8 @@ pub struct Report {
     pub chains: usize,
     /// Mutations, or samples, of all pixels together.
     pub mutations: u64,
+    /// True when it was stopped before its budget was spent.
+    pub stopped: bool,
     /// Seconds of wall clock, seeding included.
     pub wall_seconds: f64,
     /// Seconds of all cores together, seeding included.
@@ -169,10 +172,21 @@ pub enum Progress {
 pub fn render(
     scene: &Scene,
     settings: &RenderSettings,
+    on_progress: impl FnMut(Progress),
+) -> Rendering {
+    render_until(&Stop::default(), scene, settings, on_progress)
+}
+
+/// Renders `scene` until the budget is spent, or until it is told to `stop`: the image is then what
+/// there is by that time, and black where not a single mutation, or sample, has been made.
+pub fn render_until(
+    stop: &Stop,
+    scene: &Scene,
+    settings: &RenderSettings,
     mut on_progress: impl FnMut(Progress),
 ) -> Rendering {
     let (wall, cpu) = (Instant::now(), ProcessTime::now());
-    let mut work = Work::new(scene, settings, |n| on_progress(Progress::Seeding(n)));
+    let mut work = Work::new(stop, scene, settings, |n| on_progress(Progress::Seeding(n)));
     let seeding_seconds = wall.elapsed().as_secs_f64();
     let rounds = work.rounds(scene, settings.budget);
     let mut done = 0;
@@ -184,7 +198,7 @@ pub fn render(
         on_progress(Progress::Rendering(spent.min(1.0)));
         // Even when seeding has taken all the time, one round makes an image.
         let timed_out = spent >= 1.0 && done > 0;
-        if timed_out || done == rounds.count || work.is_dark() {
+        if timed_out || done == rounds.count || work.is_dark() || stop.is_set() {
             break;
         }
         work.advance(scene, rounds.size(done), settings.ensemble.threads);
@@ -205,6 +219,7 @@ pub fn render(
         max_edges: scene.max_edges(),
         threads: settings.ensemble.threads,
         mutations,
+        stopped: stop.is_set(),
         wall_seconds,
         cpu_seconds: cpu.elapsed().as_secs_f64(),
         seeding_seconds,
@@ -235,13 +250,20 @@ impl Rounds {
 }
 
 impl Work {
-    fn new(scene: &Scene, settings: &RenderSettings, on_seeding: impl FnMut(u64)) -> Self {
+    fn new(
+        stop: &Stop,
+        scene: &Scene,
+        settings: &RenderSettings,
+        on_seeding: impl FnMut(u64),
+    ) -> Self {
         let seed = settings.ensemble.seed;
         match settings.integrator {
-            Integrator::Mlt => Self::Mlt(Ensemble::new(scene, &settings.ensemble, on_seeding)),
+            Integrator::Mlt => {
+                Self::Mlt(Ensemble::until(stop, scene, &settings.ensemble, on_seeding))
+            }
             Integrator::Pssmlt => {
                 let settings = (&settings.ensemble, settings.primary);
-                Self::Pssmlt(PrimaryEnsemble::new(scene, settings, on_seeding))
+                Self::Pssmlt(PrimaryEnsemble::until(stop, scene, settings, on_seeding))
             }
             Integrator::Bdpt => Self::Bdpt(BidirectionalTracer::new(scene, seed)),
             Integrator::Path => Self::Path(PathTracer::new(scene, seed)),
@@ -249,16 +271,23 @@ impl Work {
     }
 
     fn rounds(&self, scene: &Scene, budget: Budget) -> Rounds {
+        const STEPS_UNDER_A_TIME_LIMIT: u64 = 512;
+        /// Samples of all pixels together between two looks at the clock, if a pixel's one is not more.
+        const SAMPLES_OF_A_ROUND: u64 = 1 << 17;
+        let pixels = scene.camera().pixel_count() as u64;
         let Some(chains) = self.chain_count() else {
             return match budget {
-                Budget::PerPixel(samples) => Rounds { count: samples.min(100), total: samples },
+                Budget::PerPixel(samples) => {
+                    let at_once = (SAMPLES_OF_A_ROUND / pixels.max(1)).max(1);
+                    let count = samples.div_ceil(at_once).max(samples.min(100));
+                    Rounds { count, total: samples }
+                }
                 Budget::Time(_) => Rounds { count: u64::MAX, total: 1 },
             };
         };
-        const STEPS_UNDER_A_TIME_LIMIT: u64 = 512;
         match budget {
             Budget::PerPixel(mutations) => {
-                let all = mutations * scene.camera().pixel_count() as u64;
+                let all = mutations * pixels;
                 let total = all.div_ceil(chains.max(1) as u64);
                 Rounds { count: total.min(100), total }
             }
@@ -382,4 +411,88 @@ fn strategy_reports(names: &[String], statistics: &ChainStatistics) -> Vec<Strat
         }
     };
     names.iter().zip(&statistics.strategies).map(report).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::fixtures::diffuse_room;
+
+    const INTEGRATORS: [Integrator; 4] =
+        [Integrator::Mlt, Integrator::Pssmlt, Integrator::Bdpt, Integrator::Path];
+
+    fn settings(integrator: Integrator, per_pixel: u64) -> RenderSettings {
+        let ensemble = EnsembleSettings {
+            chains: 32,
+            threads: 2,
+            bootstrap_samples: 1 << 14,
+            ..EnsembleSettings::default()
+        };
+        let budget = Budget::PerPixel(per_pixel);
+        RenderSettings { integrator, budget, ensemble, primary: PrimarySettings::default() }
+    }
+
+    #[test]
+    fn a_stopped_render_is_an_image_of_what_was_done() {
+        let scene = diffuse_room().build();
+        for integrator in INTEGRATORS {
+            let stop = Stop::default();
+            let stop_late = |at| match at {
+                Progress::Rendering(share) if share >= 0.2 => stop.set(),
+                Progress::Rendering(_) | Progress::Seeding(_) => {}
+            };
+            let Rendering { image, report } =
+                render_until(&stop, &scene, &settings(integrator, 50), stop_late);
+            let name = integrator.name();
+            assert!(report.stopped, "{name}");
+            let share = report.mutations as f64 / (50 * scene.camera().pixel_count()) as f64;
+            assert!((0.19..0.3).contains(&share), "{name}: {share} of the work");
+            let whole = render(&scene, &settings(integrator, 50), |_| ());
+            assert!(!whole.report.stopped, "{name}");
+            let ratio = image.mean().luminance() / whole.image.mean().luminance();
+            assert!((ratio - 1.0).abs() < 0.1, "{name}: {ratio} of the light");
+        }
+    }
+
+    /// The luminance of an image of chains is that of their seeds, however many steps each has taken.
+    #[test]
+    fn chains_that_stop_within_a_round_count_what_they_did() {
+        let scene = diffuse_room().build();
+        for integrator in [Integrator::Mlt, Integrator::Pssmlt] {
+            let stop = Stop::default();
+            let told = stop.clone();
+            let begun = std::sync::Barrier::new(2);
+            let Rendering { image, report } = std::thread::scope(|scope| {
+                scope.spawn(|| {
+                    begun.wait();
+                    std::thread::sleep(Duration::from_millis(5));
+                    told.set();
+                });
+                let mut waiting = true;
+                let on_progress = |at| match at {
+                    Progress::Rendering(_) if std::mem::take(&mut waiting) => drop(begun.wait()),
+                    Progress::Rendering(_) | Progress::Seeding(_) => {}
+                };
+                render_until(&stop, &scene, &settings(integrator, 1 << 16), on_progress)
+            });
+            assert!(report.stopped && report.mutations > 0, "{report:?}");
+            if integrator == Integrator::Mlt {
+                let ratio = image.mean().luminance() / report.normalization;
+                assert!((ratio - 1.0).abs() < 1e-9, "{ratio}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_stopped_before_it_has_seeds_has_no_image() {
+        let scene = diffuse_room().build();
+        for integrator in INTEGRATORS {
+            let stop = Stop::default();
+            stop.set();
+            let Rendering { image, report } =
+                render_until(&stop, &scene, &settings(integrator, 4), |_| ());
+            assert!(report.stopped && report.mutations == 0, "{report:?}");
+            assert_eq!(image.mean(), common::Rgb::BLACK, "{}", integrator.name());
+        }
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::{EnsembleSettings, Pool};
 use crate::math::{Rng, Stream};
+use crate::parallel::Stop;
 use crate::path::{Aim, BidirectionalSampler, Path};
 use crate::scene::{Scene, Tracer};
 
@@ -44,10 +45,17 @@ pub struct Bootstrap {
 
 impl Bootstrap {
     /// Draws samples until the normalisation is good enough and the seeds are diverse, or until
-    /// the budget is spent. `on_progress` hears the number of samples drawn.
-    pub fn new(scene: &Scene, settings: &BootstrapSettings, on_progress: impl FnMut(u64)) -> Self {
+    /// the budget is spent; where it is told to `stop`, there are no seeds. `on_progress` hears the
+    /// number of samples drawn.
+    pub fn new(
+        scene: &Scene,
+        settings: &BootstrapSettings,
+        stop: &Stop,
+        on_progress: impl FnMut(u64),
+    ) -> Self {
         let seed = settings.seed;
-        let pool = Pool::new(settings, || Replay::new(scene, seed), Replay::weight, on_progress);
+        let start = || Replay::new(scene, seed);
+        let pool = Pool::new(settings, start, Replay::weight, stop, on_progress);
         Self { seed, pool }
     }
 

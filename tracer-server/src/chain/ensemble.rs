@@ -12,7 +12,7 @@ use super::{
 };
 use crate::film::Film;
 use crate::mutation::{Mixture, StrategyOptions};
-use crate::parallel;
+use crate::parallel::{self, Stop};
 use crate::scene::{RayCounts, Scene, Tracer};
 
 /// Films that chains are spread over.
@@ -63,13 +63,14 @@ pub struct Ensemble {
     bootstrap: Bootstrap,
     lanes: Vec<Lane>,
     threads: usize,
-    steps: u64,
+    stop: Stop,
 }
 
 #[derive(Debug)]
 struct Lane {
     film: Film,
     chains: Vec<Chain>,
+    steps: u64,
     rays: RayCounts,
     /// The chains when the last window on them was opened.
     checkpoints: Vec<Checkpoint>,
@@ -79,18 +80,31 @@ impl Ensemble {
     /// Seeds the chains. Without light on the film there are no chains and the image stays black.
     /// `on_progress` hears the number of samples drawn for the seeds.
     pub fn new(scene: &Scene, settings: &EnsembleSettings, on_progress: impl FnMut(u64)) -> Self {
-        let bootstrap = Bootstrap::new(scene, &settings.into(), on_progress);
+        Self::until(&Stop::default(), scene, settings, on_progress)
+    }
+
+    /// As [`Ensemble::new`], for chains that can be told to stop: before they have seeds, there will be
+    /// none; later, some have made more steps than others.
+    pub fn until(
+        stop: &Stop,
+        scene: &Scene,
+        settings: &EnsembleSettings,
+        on_progress: impl FnMut(u64),
+    ) -> Self {
+        let bootstrap = Bootstrap::new(scene, &settings.into(), stop, on_progress);
         let camera = scene.camera();
         let pilot = PilotSettings {
             seed: settings.seed,
             threads: settings.threads,
             samples: settings.bootstrap_samples.div_ceil(PILOT_SHARE),
+            stop: stop.clone(),
         };
         let (mixture, prospects) = explore(scene, &settings.strategies, &pilot);
         let mut lanes: Vec<Lane> = (0..LANES)
             .map(|_| Lane {
                 film: Film::new(camera.width, camera.height),
                 chains: Vec::new(),
+                steps: 0,
                 rays: RayCounts::default(),
                 checkpoints: Vec::new(),
             })
@@ -102,7 +116,7 @@ impl Ensemble {
         }
         let threads = settings.threads.max(1);
         let mixture = Arc::new(mixture);
-        Self { mixture, prospects, bootstrap, lanes, threads, steps: 0 }
+        Self { mixture, prospects, bootstrap, lanes, threads, stop: stop.clone() }
     }
 
     /// The pool behind the seeds.
@@ -156,7 +170,7 @@ impl Ensemble {
 
     /// Steps taken by all chains together.
     pub fn steps(&self) -> u64 {
-        self.steps
+        self.lanes.iter().map(|lane| lane.steps).sum()
     }
 
     /// Has every step of every chain looked at from now on, for [`Ensemble::diagnostics`].
@@ -180,15 +194,14 @@ impl Ensemble {
     /// Every chain takes `steps` steps. With a `window`, the states that each chain passes through
     /// in its first `window` steps are returned, in the order of the lanes.
     pub fn advance(&mut self, scene: &Scene, steps: u64, window: Option<u64>) -> Vec<PathBatch> {
-        let mixture = &self.mixture;
+        let (mixture, stop) = (&self.mixture, &self.stop);
         let mut batches: Vec<Vec<PathBatch>> = self.lanes.iter().map(|_| Vec::new()).collect();
         parallel::for_each(
             self.threads.min(LANES),
             self.lanes.iter_mut().zip(batches.iter_mut()),
             || (),
-            |(), (lane, out)| *out = lane.advance(scene, mixture, steps, window),
+            |(), (lane, out)| *out = lane.advance(scene, (mixture, stop), steps, window),
         );
-        self.steps += steps * self.chain_count() as u64;
         batches.into_iter().flatten().collect()
     }
 
@@ -202,7 +215,8 @@ impl Ensemble {
         let mut image = self.splats();
         let b = self.bootstrap.normalization() * scene.radiance_scale();
         let pixels = scene.camera().pixel_count() as f64;
-        let factor = if self.steps == 0 { 0.0 } else { b * pixels / self.steps as f64 };
+        let steps = self.steps();
+        let factor = if steps == 0 { 0.0 } else { b * pixels / steps as f64 };
         image.scale(factor);
         image
     }
@@ -233,7 +247,7 @@ impl Lane {
     fn advance(
         &mut self,
         scene: &Scene,
-        mixture: &Mixture,
+        (mixture, stop): (&Mixture, &Stop),
         steps: u64,
         window: Option<u64>,
     ) -> Vec<PathBatch> {
@@ -251,11 +265,12 @@ impl Lane {
                     left -= 1;
                 }
             }
-            for _ in 0..left {
+            let done = stop.repeat(left, || {
                 chain.step(&scene, mixture, &mut self.film);
-            }
+            });
             chain.flush(&mut self.film);
             chain.settle();
+            self.steps += steps - left + done;
         }
         self.rays.add(&scene);
         watch.map_or_else(Vec::new, Watch::finish)

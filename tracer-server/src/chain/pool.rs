@@ -5,7 +5,7 @@
 
 use super::BootstrapSettings;
 use crate::math::{Accumulator, Rng};
-use crate::parallel;
+use crate::parallel::{self, Stop};
 
 /// Samples that one worker draws in one go.
 const CHUNK: u64 = 2048;
@@ -19,7 +19,7 @@ pub struct Pool {
 
 impl Pool {
     /// Draws samples until the mean weight is known well enough and the starts are diverse, or until
-    /// the budget is spent.
+    /// the budget is spent. A pool that was told to `stop` is not whole, and has no starts.
     ///
     /// `weigh` gives the weight of the sample with a number; `start` makes what a worker needs for
     /// that. `on_progress` hears the number of samples drawn.
@@ -27,16 +27,22 @@ impl Pool {
         settings: &BootstrapSettings,
         start: impl Fn() -> S + Sync,
         weigh: impl Fn(&mut S, u64) -> f64 + Sync,
+        stop: &Stop,
         mut on_progress: impl FnMut(u64),
     ) -> Self {
         let mut pool = Self { weights: Vec::new(), total: Accumulator::default() };
         let draw = |state: &mut S, number: u64| -> Vec<f64> {
-            (number * CHUNK..(number + 1) * CHUNK).map(|n| weigh(state, n)).collect()
+            let samples = number * CHUNK..(number + 1) * CHUNK;
+            if stop.is_set() { Vec::new() } else { samples.map(|n| weigh(state, n)).collect() }
         };
         let mut target = settings.min_samples.max(CHUNK);
         loop {
             let chunks = pool.weights.len() as u64 / CHUNK..target.div_ceil(CHUNK);
             let drawn = parallel::map(settings.threads, chunks, &start, draw);
+            if stop.is_set() {
+                pool.weights.clear();
+                return pool;
+            }
             for weights in drawn {
                 pool.add(weights);
             }

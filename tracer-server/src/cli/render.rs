@@ -1,32 +1,41 @@
 //! `tracer-server render`: one image, and the story of how it was made.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use anyhow::{Context as _, ensure};
+use anyhow::ensure;
 use clap::builder::RangedU64ValueParser;
 use clap::{Args, ValueEnum};
 use comfy_table::Table;
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use common::{mean_ratio, relative_mse};
+use host::Writer;
+use host::file::Place;
 
 use super::chains::ChainArgs;
 use super::input::{self, FilmSize};
 use super::meter::Meter;
+use super::stopper::Stopper;
 use crate::film::Film;
-use crate::image_file;
+use crate::image_file::{self, Destination};
 use crate::integrator::pssmlt::{PrimarySampler, PrimarySettings};
-use crate::render::{Budget, Integrator, Progress, RenderSettings, Rendering, Report, render};
+use crate::render::{
+    Budget, Integrator, Progress, RenderSettings, Rendering, Report, render_until,
+};
 use crate::scene::{MAX_EDGES, Scene};
 
 /// Mutations, or samples, for each pixel unless the user says otherwise.
 const DEFAULT_PER_PIXEL: u64 = 256;
+/// How long the end waits for whoever reads the report.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Renders one image, with a table of what the chains did.
 ///
-/// The same scene, seed and options give the same image, whatever the number of threads.
+/// The same scene, seed and options give the same image, whatever the number of threads. Ctrl-C, SIGTERM
+/// and the end of the terminal write the image so far; exit codes are then 130, 143 and 129. An image
+/// comes to its place whole: until then, what was there before stays.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "\
 Examples:
@@ -39,7 +48,8 @@ Examples:
 pub struct RenderArgs {
     /// A built-in scene, a .toml, .obj or Mitsuba .xml file, or a directory that holds one.
     pub scene: String,
-    /// Where to put the image: .exr keeps linear radiance, .png is exposed to be looked at.
+    /// Where to put the image: .exr keeps linear radiance, .png is exposed to be looked at; a pipe
+    /// without a name gets EXR.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// How to render.
@@ -148,40 +158,96 @@ pub(super) fn seconds(text: &str) -> Result<Duration, String> {
 
 /// Renders, writes the image and prints the report.
 pub fn run(args: &RenderArgs) -> anyhow::Result<ExitCode> {
-    // What would only fail after the work is looked at before it.
-    image_file::Format::of(&args.output)?;
-    for file in [Some(&args.output), args.stats_json.as_ref()].into_iter().flatten() {
-        check_folder(file)?;
+    let job = Job::new(args)?;
+    let file = args.output.display();
+    let stopper = Stopper::listen(format!("`{file}` gets the image so far"))?;
+    job.run(&stopper)
+}
+
+/// A render whose scene is loaded and whose files have a place: what would only fail after the work
+/// has been looked at before it.
+struct Job {
+    scene: Scene,
+    settings: RenderSettings,
+    reference: Option<Film>,
+    image: Destination,
+    stats: Option<Place>,
+}
+
+impl Job {
+    fn new(args: &RenderArgs) -> anyhow::Result<Self> {
+        args.chains.check(args.integrator)?;
+        let primary = args.primary.settings(args.integrator)?;
+        let image = Destination::find(&args.output)?;
+        let stats = args.stats_json.as_deref().map(Place::find).transpose()?;
+        ensure!(
+            args.stats_json.as_ref() != Some(&args.output),
+            "--stats-json and --output name the same file"
+        );
+        let (scene, wishes) = input::scene_with_depth(&args.scene, args.film, args.max_depth)?;
+        let reference = args.reference.as_deref().map(image_file::read_exr).transpose()?;
+        if let Some(reference) = &reference {
+            check_reference(reference, &scene)?;
+        }
+        let settings = RenderSettings {
+            integrator: args.integrator.into(),
+            budget: match (args.time, args.mutations_per_pixel) {
+                (Some(time), _) => Budget::Time(time),
+                (None, mutations) => Budget::PerPixel(mutations.unwrap_or(DEFAULT_PER_PIXEL)),
+            },
+            ensemble: args.chains.for_a_picture(&scene, &wishes)?,
+            primary,
+        };
+        Ok(Self { scene, settings, reference, image, stats })
     }
-    let (scene, wishes) = input::scene_with_depth(&args.scene, args.film, args.max_depth)?;
-    let reference = args.reference.as_deref().map(image_file::read_exr).transpose()?;
-    if let Some(reference) = &reference {
-        check_reference(reference, &scene)?;
+
+    fn run(&self, stopper: &Stopper) -> anyhow::Result<ExitCode> {
+        let Self { scene, settings, .. } = self;
+        let what = format!("{}, {}", scene.name(), settings.integrator.name());
+        let meter = Meter::new(what, "rendered");
+        let on_progress = |at| show(&meter, at);
+        let Rendering { image, mut report } =
+            render_until(stopper.stop(), scene, settings, on_progress);
+        meter.finish();
+        let stopped = if report.stopped { stopper.ending() } else { None };
+        let code = stopped.map_or(ExitCode::SUCCESS, |ending| ending.exit_code().into());
+        let file = self.image.path().display();
+        if report.stopped && report.mutations == 0 {
+            tracing::warn!("stopped before there was an image: `{file}` is as it was");
+            return Ok(code);
+        }
+        if let Some(reference) = &self.reference {
+            report.relative_mse = Some(relative_mse(image.pixels(), reference.pixels()));
+            report.mean_ratio = Some(mean_ratio(image.pixels(), reference.pixels()));
+        }
+        self.image.write(&image, &metadata(&report))?;
+        if let Some(stats) = &self.stats {
+            stats.write_bytes(serde_json::to_string_pretty(&report)?.as_bytes())?;
+        }
+        if report.stopped {
+            let (done, work) = (report.mutations, work(&report));
+            tracing::warn!("stopped: `{file}` holds the image of the {done} {work} so far");
+        }
+        self.tell(&report)?;
+        Ok(code)
     }
-    let settings = RenderSettings {
-        integrator: args.integrator.into(),
-        budget: match (args.time, args.mutations_per_pixel) {
-            (Some(time), _) => Budget::Time(time),
-            (None, mutations) => Budget::PerPixel(mutations.unwrap_or(DEFAULT_PER_PIXEL)),
-        },
-        ensemble: args.chains.for_a_picture(&scene, &wishes)?,
-        primary: args.primary.settings(args.integrator)?,
-    };
-    let what = format!("{}, {}", scene.name(), settings.integrator.name());
-    let meter = Meter::new(what, "rendered");
-    let Rendering { image, mut report } = render(&scene, &settings, |at| show(&meter, at));
-    meter.finish();
-    if let Some(reference) = &reference {
-        report.relative_mse = Some(relative_mse(image.pixels(), reference.pixels()));
-        report.mean_ratio = Some(mean_ratio(image.pixels(), reference.pixels()));
+
+    /// Prints the report, on standard error where the image itself went to standard output.
+    fn tell(&self, report: &Report) -> io::Result<()> {
+        let mut text = Vec::new();
+        print(&mut text, report, &self.image)?;
+        if self.image.is_stdout() {
+            let error = Writer::stderr();
+            error.say(text);
+            error.settle(PATIENCE);
+            return Ok(());
+        }
+        match io::stdout().write_all(&text) {
+            // The image is safe, whether or not anybody reads on.
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+            told => told,
+        }
     }
-    image_file::write(&args.output, &image, &metadata(&report))?;
-    if let Some(file) = &args.stats_json {
-        std::fs::write(file, serde_json::to_string_pretty(&report)?)
-            .with_context(|| format!("`{}` could not be written", file.display()))?;
-    }
-    print(&mut io::stdout().lock(), &report, &args.output)?;
-    Ok(ExitCode::SUCCESS)
 }
 
 /// Refuses a reference of another size than the scene's film.
@@ -196,15 +262,6 @@ pub(super) fn check_reference(reference: &Film, scene: &Scene) -> anyhow::Result
         camera.width,
         camera.height,
     );
-    Ok(())
-}
-
-fn check_folder(file: &Path) -> anyhow::Result<()> {
-    let folder = match file.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    ensure!(folder.is_dir(), "`{}`: there is no folder `{}`", file.display(), folder.display());
     Ok(())
 }
 
@@ -237,16 +294,24 @@ fn metadata(report: &Report) -> Vec<(String, String)> {
 fn show(meter: &Meter, progress: Progress) {
     match progress {
         Progress::Seeding(samples) => meter.tell(format!("seeding: {samples} samples")),
-        Progress::Rendering(share) => meter.show(share, ""),
+        Progress::Rendering(share) => {
+            tracing::debug!("{:.2} % rendered", 100.0 * share);
+            meter.show(share, "");
+        }
     }
 }
 
-fn print(out: &mut impl Write, report: &Report, file: &Path) -> io::Result<()> {
+/// What the integrator counts.
+fn work(report: &Report) -> &'static str {
+    if report.chains > 0 { "mutations" } else { "samples" }
+}
+
+fn print(out: &mut impl Write, report: &Report, file: &Destination) -> io::Result<()> {
     if !report.strategies.is_empty() {
         writeln!(out, "Strategies; rates are shares of all tries, failures included")?;
         writeln!(out, "{}", strategy_table(report).trim_fmt())?;
     }
-    let work = if report.chains > 0 { "mutations" } else { "samples" };
+    let work = work(report);
     let per = |n: u64| n as f64 / report.mutations.max(1) as f64;
     writeln!(
         out,
@@ -290,7 +355,7 @@ fn print(out: &mut impl Write, report: &Report, file: &Path) -> io::Result<()> {
             error * report.cpu_seconds,
         )?;
     }
-    writeln!(out, "written to {}", file.display())
+    writeln!(out, "written to {}", file.path().display())
 }
 
 /// What each strategy did. Every rate is a share of all tries of the strategy, failures included.
@@ -372,15 +437,18 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let image = folder.path().join("a.exr");
         let json = folder.path().join("a.json");
-        for integrator in ["mlt", "pssmlt", "bdpt", "path"] {
+        for (integrator, options) in
+            [("mlt", "--chains 16"), ("pssmlt", "--chains 16"), ("bdpt", ""), ("path", "")]
+        {
             let line = format!(
                 "tracer-server render cornell --width 16 --height 16 --mutations-per-pixel 4 \
-                 --chains 16 --integrator {integrator} -o {} --stats-json {}",
+                 --integrator {integrator} {options} -o {} --stats-json {}",
                 image.display(),
                 json.display(),
             );
             let line = line.split_whitespace().collect::<Vec<_>>().join(" ");
-            run(&parse(&line).expect("valid arguments")).expect("a render");
+            let job = Job::new(&parse(&line).expect("valid arguments")).expect("sound");
+            job.run(&Stopper::default()).expect("a render");
             let film = image_file::read_exr(&image).expect("an image");
             assert!(film.mean().luminance() > 0.0, "{integrator}: the image is black");
             let text = std::fs::read_to_string(&json).expect("a report");
@@ -390,7 +458,52 @@ mod tests {
         }
         let line =
             format!("tracer-server render cornell -o {}/no/such/a.png", folder.path().display());
-        let error = run(&parse(&line).expect("valid arguments")).expect_err("no folder");
-        assert!(error.to_string().contains("there is no folder"), "{error}");
+        let error = complaint(&line);
+        assert!(error.contains("there is no such folder"), "{error}");
+    }
+
+    /// Why a render does not even start.
+    fn complaint(line: &str) -> String {
+        let job = Job::new(&parse(line).expect("valid arguments"));
+        job.err().map_or_else(|| panic!("{line} is done"), |error| format!("{error:#}"))
+    }
+
+    #[test]
+    fn options_that_would_change_nothing_are_refused() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let file = folder.path().join("a.exr");
+        let line = |integrator: &str, option: &str| {
+            let file = file.display();
+            format!("tracer-server render cornell --integrator {integrator} {option} -o {file}")
+        };
+        let strategies = ["--strategies lens", "--without lens", "--tune lens.radius=1..2"];
+        for option in [&strategies[..], &["--adapt off"]].concat() {
+            for integrator in ["pssmlt", "bdpt", "path"] {
+                let complaint = complaint(&line(integrator, option));
+                let name = option.split(' ').next().expect("a name");
+                assert!(complaint.starts_with(name), "{integrator} {option}: {complaint}");
+            }
+            Job::new(&parse(&line("mlt", option)).expect("valid")).expect(option);
+        }
+        for integrator in ["bdpt", "path"] {
+            let complaint = complaint(&line(integrator, "--chains 8"));
+            assert!(complaint.starts_with("--chains would change nothing"), "{complaint}");
+        }
+        Job::new(&parse(&line("pssmlt", "--chains 8")).expect("valid")).expect("it has chains");
+        let same = format!("--stats-json {}", file.display());
+        assert!(complaint(&line("path", &same)).contains("the same file"));
+    }
+
+    #[test]
+    fn a_render_that_is_stopped_at_once_leaves_the_old_image() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let file = folder.path().join("a.exr");
+        std::fs::write(&file, b"old").expect("writable");
+        let line = format!("tracer-server render cornell -o {}", file.display());
+        let job = Job::new(&parse(&line).expect("valid arguments")).expect("sound");
+        let stopper = Stopper::default();
+        stopper.stop().set();
+        job.run(&stopper).expect("no failure");
+        assert_eq!(std::fs::read(&file).expect("readable"), b"old");
     }
 }
