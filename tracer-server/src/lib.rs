@@ -1,5 +1,9 @@
 //! The tracer: scenes, paths, mutations, chains, and the daemon that streams them.
 
+// A new variant must be looked at wherever variants are told apart; tests may leave out what they do
+// not mean.
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 pub mod bsdf;
 pub mod chain;
 pub mod cli;

@@ -170,7 +170,9 @@ impl TryFrom<v1::FocusStep> for FocusStep {
             Ok(v1::FocusOutcome::Accepted) => FocusOutcome::Accepted,
             Ok(v1::FocusOutcome::Rejected) => FocusOutcome::Rejected,
             Ok(v1::FocusOutcome::Failed) => FocusOutcome::Failed(reason),
-            _ => return Err(WireError::Missing("focus_step.outcome")),
+            Ok(v1::FocusOutcome::Unspecified) | Err(_) => {
+                return Err(WireError::Missing("focus_step.outcome"));
+            }
         };
         if !matches!(outcome, FocusOutcome::Failed(_)) {
             let made = kept_light + kept_eye + inserted.len() as u32;

@@ -227,7 +227,7 @@ impl From<Role> for v1::Role {
 pub(super) fn role(code: i32) -> Role {
     match v1::Role::try_from(code) {
         Ok(v1::Role::Driver) => Role::Driver,
-        _ => Role::Observer,
+        Ok(v1::Role::Observer | v1::Role::Unspecified) | Err(_) => Role::Observer,
     }
 }
 

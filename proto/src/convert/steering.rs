@@ -96,35 +96,32 @@ fn order(wire: What) -> Result<Order, WireError> {
             let precision = check::between("order.chains_precision", precision, least, most)?;
             Order::Chains(ChainCommand::SetPrecision(precision))
         }
-        other => Order::Explorer(explorer_command(other)?),
-    })
-}
-
-/// What is left of an order that concerns neither the lease nor the chains.
-fn explorer_command(wire: What) -> Result<ExplorerCommand, WireError> {
-    Ok(match wire {
         What::ExplorerSeed(v1::ExplorerSeed { path }) => {
-            ExplorerCommand::Seed(path.map_or(Seed::Newest, |id| Seed::Path(id.into())))
+            let seed = path.map_or(Seed::Newest, |id| Seed::Path(id.into()));
+            Order::Explorer(ExplorerCommand::Seed(seed))
         }
+        What::ExplorerPause(_) => Order::Explorer(ExplorerCommand::Pause),
         What::ExplorerPlay(rate) => {
             let (least, most) = (MIN_RATE.into(), MAX_RATE.into());
             check::between("order.explorer_play", rate.into(), least, most)?;
-            ExplorerCommand::Play(rate)
+            Order::Explorer(ExplorerCommand::Play(rate))
         }
         What::ExplorerStep(count) => {
-            ExplorerCommand::Step(check::within("order.explorer_step", count, 1, MAX_STEPS)?)
+            let count = check::within("order.explorer_step", count, 1, MAX_STEPS)?;
+            Order::Explorer(ExplorerCommand::Step(count))
         }
-        What::ExplorerSkipToAcceptance(_) => ExplorerCommand::Skip(SkipTo::Acceptance),
+        What::ExplorerSkipToAcceptance(_) => {
+            Order::Explorer(ExplorerCommand::Skip(SkipTo::Acceptance))
+        }
         What::ExplorerSkipToStrategy(strategy) => {
-            ExplorerCommand::Skip(SkipTo::Strategy(strategy_id(strategy)?))
+            let strategy = strategy_id(strategy)?;
+            Order::Explorer(ExplorerCommand::Skip(SkipTo::Strategy(strategy)))
         }
-        What::ExplorerAllow(bits) => ExplorerCommand::Allow(StrategySet(bits)),
-        What::ExplorerFan(v1::ExplorerFan { strategy, count }) => ExplorerCommand::Fan {
-            strategy: strategy_id(strategy)?,
-            count: check::within("order.explorer_fan", count, 1, MAX_FAN)?,
-        },
-        // The rest was taken out before.
-        _ => ExplorerCommand::Pause,
+        What::ExplorerAllow(bits) => Order::Explorer(ExplorerCommand::Allow(StrategySet(bits))),
+        What::ExplorerFan(v1::ExplorerFan { strategy, count }) => {
+            let count = check::within("order.explorer_fan", count, 1, MAX_FAN)?;
+            Order::Explorer(ExplorerCommand::Fan { strategy: strategy_id(strategy)?, count })
+        }
     })
 }
 
@@ -188,7 +185,9 @@ impl TryFrom<v1::LeaseNotice> for LeaseNotice {
             Ok(Event::Granted) => LeaseEvent::Granted,
             Ok(Event::Lost) => LeaseEvent::Lost,
             Ok(Event::Asked) => LeaseEvent::Asked,
-            _ => return Err(WireError::Missing("lease_notice.event")),
+            Ok(Event::Unspecified) | Err(_) => {
+                return Err(WireError::Missing("lease_notice.event"));
+            }
         };
         Ok(Self { event, by: author(wire.by)? })
     }
@@ -282,7 +281,8 @@ impl TryFrom<v1::ExplorerState> for ExplorerState {
             pace: match Wire::try_from(wire.pace) {
                 Ok(Wire::Playing) => Pace::Playing,
                 Ok(Wire::Skipping) => Pace::Skipping,
-                _ => Pace::Paused,
+                // A pace of a later version is none that this one could show.
+                Ok(Wire::Paused | Wire::Unspecified) | Err(_) => Pace::Paused,
             },
             rate: wire.rate,
             allowed: StrategySet(wire.allowed),

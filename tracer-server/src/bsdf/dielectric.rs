@@ -58,10 +58,8 @@ impl Scatter for Dielectric {
     fn invert(&self, n: DVec3, w: DVec3, _: DVec3, event: Event, rng: &mut Rng) -> [f64; 3] {
         let reflected = fresnel::dielectric(n.dot(w).abs(), self.relative_eta(n, w));
         let [u, rest @ ..] = rng.array::<3>();
-        let choice = match event {
-            Event::Reflect => u * reflected,
-            _ => reflected + u * (1.0 - reflected),
-        };
+        let choice =
+            if event == Event::Reflect { u * reflected } else { reflected + u * (1.0 - reflected) };
         [below_one(choice), rest[0], rest[1]]
     }
 
@@ -76,7 +74,9 @@ impl Scatter for Dielectric {
                 let eta = self.relative_eta(n, w_l);
                 (self.transmittance, 1.0 - reflected, eta * eta)
             }
-            _ => return None,
+            Event::End | Event::Diffuse | Event::Glossy | Event::Reflect | Event::Transmit => {
+                return None;
+            }
         };
         (probability > 0.0 && !color.is_black()).then_some(Scattering {
             color,
@@ -90,9 +90,10 @@ impl Scatter for Dielectric {
 
     fn follow(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
         match event {
-            Event::Reflect if !self.reflectance.is_black() => Some(reflect(n, w)),
-            Event::Transmit if !self.transmittance.is_black() => self.refract(n, w),
-            _ => None,
+            Event::Reflect => (!self.reflectance.is_black()).then(|| reflect(n, w)),
+            Event::Transmit if self.transmittance.is_black() => None,
+            Event::Transmit => self.refract(n, w),
+            Event::End | Event::Diffuse | Event::Glossy => None,
         }
     }
 

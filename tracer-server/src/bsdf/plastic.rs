@@ -55,7 +55,7 @@ impl Plastic {
 pub(super) fn untinted(fresnel: Fresnel) -> Fresnel {
     match fresnel {
         Fresnel::Dielectric { eta, .. } => Fresnel::Dielectric { eta, tint: Rgb::WHITE },
-        other => other,
+        Fresnel::Constant(_) | Fresnel::Schlick(_) | Fresnel::Conductor { .. } => fresnel,
     }
 }
 
@@ -125,7 +125,7 @@ impl Scatter for Plastic {
                     eye_pdf: (1.0 - eye) * cos_l * FRAC_1_PI,
                 })
             }
-            _ => None,
+            Event::End | Event::Glossy | Event::Transmit => None,
         }
     }
 
@@ -259,10 +259,12 @@ impl Model for PlasticDescription {
     /// The coat, whose albedo is an integral, stays as it is.
     fn rebuild(&self, built: &Bsdf, inputs: &impl Inputs) -> Bsdf {
         let diffuse = self.base(inputs);
-        match *built {
-            Bsdf::Plastic(plastic) => Bsdf::Plastic(Plastic { diffuse, ..plastic }),
-            Bsdf::RoughPlastic(plastic) => Bsdf::RoughPlastic(plastic.painted(diffuse)),
-            _ => self.build(inputs),
+        if let Bsdf::Plastic(plastic) = *built {
+            Bsdf::Plastic(Plastic { diffuse, ..plastic })
+        } else if let Bsdf::RoughPlastic(plastic) = *built {
+            Bsdf::RoughPlastic(plastic.painted(diffuse))
+        } else {
+            self.build(inputs)
         }
     }
 }

@@ -109,7 +109,7 @@ impl RoughPlastic {
     fn tint(&self) -> f64 {
         match self.fresnel {
             Fresnel::Dielectric { tint, .. } => tint.luminance(),
-            _ => 1.0,
+            Fresnel::Constant(_) | Fresnel::Schlick(_) | Fresnel::Conductor { .. } => 1.0,
         }
     }
 

@@ -17,7 +17,7 @@ use common::{ChainId, PathHeader, PathId, StrategyId};
 use crate::film::Film;
 use crate::math::{Rng, Stream};
 use crate::mutation::{Mixture, Proposal};
-use crate::path::{Draft, Failure, Path};
+use crate::path::{Draft, Failure, Kept, Path};
 use crate::scene::Tracer;
 
 pub use archive::{Archive, Gone, Round};
@@ -197,7 +197,7 @@ impl Chain {
     pub fn step(&mut self, scene: &Tracer<'_>, mixture: &Mixture, film: &mut Film) -> Step {
         self.steps += 1;
         self.trial = None;
-        self.draft.range = None;
+        self.draft.cut = None;
         let chosen = mixture.choose(&self.current, self.mixture_total, &mut self.rng);
         let Some(strategy) = chosen else {
             self.pending += 1.0;
@@ -248,7 +248,7 @@ impl Chain {
             self.statistics.leave(self.stay());
             self.arrival = (self.steps, a, StrategyId(strategy as u8));
             self.arrive();
-            let Proposal { kept_light, kept_eye, .. } = *proposal;
+            let Kept { light: kept_light, eye: kept_eye } = proposal.kept;
             let outcome = Outcome::Accepted { kept_light, kept_eye };
             return Step { strategy, acceptance: a, outcome };
         }
@@ -291,7 +291,7 @@ impl Chain {
         rng: &mut Rng,
     ) -> Step {
         self.trial = None;
-        self.draft.range = None;
+        self.draft.cut = None;
         let failed = |reason| Step { strategy, acceptance: 0.0, outcome: Outcome::Failed(reason) };
         if !mixture.get(strategy).applicable(&self.current) {
             return failed(Failure::NoSubpath);
@@ -314,7 +314,7 @@ impl Chain {
         let Some((acceptance, _)) = self.weigh(strategy, &proposal, mixture, before) else {
             return failed(Failure::NotFinite);
         };
-        let Proposal { kept_light, kept_eye, .. } = proposal;
+        let Kept { light: kept_light, eye: kept_eye } = proposal.kept;
         let outcome = if acceptance > 0.0 && rng.uniform() < acceptance {
             Outcome::Accepted { kept_light, kept_eye }
         } else {

@@ -51,7 +51,8 @@ impl Explorer {
     /// Starts an explorer of `scene` that follows `orders` and takes its paths from the `archive`.
     /// `steering` is the other end of `orders`.
     pub fn start(
-        (scene, seed): (Arc<Scene>, u64),
+        scene: Arc<Scene>,
+        seed: u64,
         archive: Arc<Archive>,
         hub: Hub,
         steering: Steering,

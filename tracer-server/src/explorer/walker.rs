@@ -13,7 +13,7 @@ use crate::film::Film;
 use crate::hub::FocusNews;
 use crate::math::{Rng, Stream};
 use crate::mutation::Mixture;
-use crate::path::{Failure, Path, Vertex};
+use crate::path::{Cut, Draft, Failure, Kept, Path, Vertex};
 use crate::scene::{RayCounts, Scene, Tracer};
 
 /// Paths of its own that the explorer can go back to: about two megabytes.
@@ -279,7 +279,7 @@ impl Walk {
         match step.outcome {
             Outcome::Failed(reason) => self.look_at_failure(scene, reason, told),
             Outcome::Rejected => {
-                let kept = self.chain.trial().map(|t| (t.proposal.kept_light, t.proposal.kept_eye));
+                let kept = self.chain.trial().map(|trial| trial.proposal.kept);
                 look_at_proposal(self.chain.proposed(), kept.unwrap_or_default(), told)
             }
             // A step has moved the chain, a probe has not.
@@ -287,7 +287,7 @@ impl Walk {
                 let moved = self.chain.header().id.step != self.current.header.id.step;
                 let y = if moved { self.chain.current() } else { self.chain.proposed() };
                 let told = FocusStep { outcome: FocusOutcome::Accepted, ..told };
-                look_at_proposal(y, (kept_light, kept_eye), told)
+                look_at_proposal(y, Kept { light: kept_light, eye: kept_eye }, told)
             }
         }
     }
@@ -296,17 +296,17 @@ impl Walk {
         let outcome = FocusOutcome::Failed(reason as u8);
         let draft = self.chain.draft();
         let x = self.chain.current();
-        let Some((kept_light, kept_from)) = draft.range else {
+        let Some(cut) = draft.cut else {
             return FocusStep { outcome, kept_light: told.length, ..told };
         };
-        let blocker = (reason == Failure::Occluded)
-            .then(|| blocker(scene, x, (kept_light, kept_from), (&draft.light, &draft.eye)));
+        let blocker = (reason == Failure::Occluded).then(|| blocker(scene, x, cut, draft));
         // A light infinitely far away moves with the vertex that it shines on.
-        let kept = if kept_light == 1 && x.is_lit_from_afar() { 0 } else { kept_light };
+        let moves = cut.light == 1 && x.is_lit_from_afar();
+        let kept_light = if moves { 0 } else { cut.light };
         FocusStep {
             outcome,
-            kept_light: kept,
-            kept_eye: told.length.saturating_sub(kept_from).min(told.length - kept),
+            kept_light,
+            kept_eye: cut.kept(told.length).eye.min(told.length - kept_light),
             inserted: records(&draft.light),
             eye_side: records(&draft.eye),
             blocker: blocker.flatten(),
@@ -316,16 +316,12 @@ impl Walk {
 }
 
 /// What is seen of a complete proposal.
-fn look_at_proposal(
-    y: &Path,
-    (kept_light, kept_eye): (usize, usize),
-    told: FocusStep,
-) -> FocusStep {
-    let end = y.vertices().len().saturating_sub(kept_eye);
+fn look_at_proposal(y: &Path, kept: Kept, told: FocusStep) -> FocusStep {
+    let end = y.vertices().len().saturating_sub(kept.eye);
     FocusStep {
-        kept_light,
-        kept_eye,
-        inserted: records(y.vertices().get(kept_light..end).unwrap_or_default()),
+        kept_light: kept.light,
+        kept_eye: kept.eye,
+        inserted: records(y.vertices().get(kept.light..end).unwrap_or_default()),
         film: y.film().as_vec2().to_array(),
         luminance: (1.0 / y.density_sum()) as f32,
         rgb: y.unit_color().to_f32(),
@@ -334,14 +330,9 @@ fn look_at_proposal(
 }
 
 /// The surface in the way between the two sides of a failed proposal.
-fn blocker(
-    scene: &Tracer<'_>,
-    x: &Path,
-    (kept_light, kept_from): (usize, usize),
-    (light, eye): (&[Vertex], &[Vertex]),
-) -> Option<[f32; 3]> {
-    let a = light.last().or_else(|| x.vertices().get(kept_light.checked_sub(1)?))?;
-    let b = eye.last().or_else(|| x.vertices().get(kept_from))?;
+fn blocker(scene: &Tracer<'_>, x: &Path, cut: Cut, draft: &Draft) -> Option<[f32; 3]> {
+    let a = draft.light.last().or_else(|| x.vertices().get(cut.light.checked_sub(1)?))?;
+    let b = draft.eye.last().or_else(|| x.vertices().get(cut.eye_from))?;
     // From b, which is always a place.
     let (direction, distance) = if a.is_lamp() && scene.is_infinite(a.material) {
         (-a.normal, f64::INFINITY)

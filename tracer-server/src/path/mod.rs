@@ -18,7 +18,7 @@ mod tape;
 mod vertex;
 mod walk;
 
-pub use assemble::Splice;
+pub use assemble::{Cut, Kept, Splice};
 pub use bidirectional::BidirectionalSampler;
 pub use class::ClassKey;
 pub use failure::Failure;
@@ -29,14 +29,11 @@ pub use vertex::Vertex;
 pub use walk::{Aim, emit, extend, lens_vertex, light_vertex, scatter};
 
 use arrayvec::ArrayVec;
-use common::Rgb;
+use common::{MAX_VERTICES, Rgb};
 use glam::{DVec2, DVec3};
 
 use crate::bsdf::Scattering;
 use crate::scene::{MAX_EDGES, Tracer};
-
-/// Most vertices a path can have.
-pub const MAX_VERTICES: usize = MAX_EDGES + 1;
 
 /// Vertices in the order of a walk.
 pub type Vertices = ArrayVec<Vertex, MAX_VERTICES>;
@@ -201,10 +198,9 @@ impl Path {
         let lens = Self::from_lens(lens);
         let splice = Splice {
             base: &lens,
-            kept_light: 0,
+            cut: Cut { light: 0, eye_from: 0 },
             light: inner,
             eye: &[],
-            kept_from: 0,
             film: Some(film),
         };
         let mut path = Self::default();

@@ -7,7 +7,7 @@ mod hash;
 mod light;
 mod material;
 
-use common::{CameraPose, Rgb};
+use common::{CameraPose, MAX_VERTICES, Rgb};
 use glam::{DVec3, Vec2, Vec3};
 
 use crate::bsdf::{ColorInput, Inputs, NumberInput};
@@ -16,7 +16,7 @@ pub use light::{Glow, LightDescription, SkyImage};
 pub use material::{Coding, Material, Texture};
 
 /// Longest path that any scene may ask for, in edges.
-pub const MAX_EDGES: usize = 64;
+pub const MAX_EDGES: usize = MAX_VERTICES - 1;
 
 /// A whole scene in the units of its file.
 #[derive(Clone, Debug, PartialEq)]

@@ -285,11 +285,11 @@ impl Read {
     ) -> Result<Vec<(String, Vec<u16>, Surface)>, LoadError> {
         let folder = self.origins.whole.file.parent().unwrap_or_else(|| Path::new(""));
         let path = folder.join(name);
-        let scene = obj::read(&path).map_err(|error| match error {
-            LoadError::Unreadable { .. } => {
-                self.error(place, "obj", format!("mesh `{}`, obj: {error}", mesh.name))
+        let scene = obj::read(&path).map_err(|error| {
+            if !matches!(error, LoadError::Unreadable { .. }) {
+                return error;
             }
-            other => other,
+            self.error(place, "obj", format!("mesh `{}`, obj: {error}", mesh.name))
         })?;
         let offset = self.description.materials.len();
         let place_of_obj = self.origins.field(place, "obj");

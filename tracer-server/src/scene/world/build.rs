@@ -105,8 +105,7 @@ impl Scene {
             .map(|m| SurfaceMaterial::new(description, m, 1.0 / radiance_scale))
             .collect();
         let used = used_surfaces(&materials, &surfaces);
-        let features =
-            SceneFeatures::of(&used, spheres, corners.has_normals(), (&emitters, &camera));
+        let features = SceneFeatures::of(&used, spheres, corners.has_normals(), &emitters, &camera);
         if !features.textures {
             corners.drop_texcoords();
         }

@@ -38,7 +38,8 @@ impl SceneFeatures {
         used: &[&SurfaceMaterial],
         spheres: usize,
         shading_normals: bool,
-        (lights, camera): (&Emitters, &Camera),
+        lights: &Emitters,
+        camera: &Camera,
     ) -> Self {
         let environment = lights.sky().is_some();
         Self {

@@ -176,7 +176,7 @@ impl Lamp {
     pub(crate) fn invert(&self, normal: DVec3) -> Option<[f64; 2]> {
         match self {
             Self::Sky(sky) => Some(sky.invert(-normal)),
-            _ => None,
+            Self::Point { .. } | Self::Spot { .. } | Self::Sun { .. } => None,
         }
     }
 
