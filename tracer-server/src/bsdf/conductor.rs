@@ -65,7 +65,7 @@ impl Scatter for RoughConductor {
         })
     }
 
-    fn follow(&self, _: DVec3, _: DVec3, _: Event) -> Option<DVec3> {
+    fn specular_direction(&self, _: DVec3, _: DVec3, _: Event) -> Option<DVec3> {
         None
     }
 

@@ -52,7 +52,7 @@ impl Scatter for Dielectric {
     fn sample(&self, n: DVec3, w: DVec3, [u, ..]: [f64; 3]) -> Option<(DVec3, Event)> {
         let reflected = fresnel::dielectric(n.dot(w).abs(), self.relative_eta(n, w));
         let event = if u < reflected { Event::Reflect } else { Event::Transmit };
-        self.follow(n, w, event).map(|direction| (direction, event))
+        self.specular_direction(n, w, event).map(|direction| (direction, event))
     }
 
     fn invert(&self, n: DVec3, w: DVec3, _: DVec3, event: Event, rng: &mut Rng) -> [f64; 3] {
@@ -88,7 +88,7 @@ impl Scatter for Dielectric {
         })
     }
 
-    fn follow(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
+    fn specular_direction(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
         match event {
             Event::Reflect => (!self.reflectance.is_black()).then(|| reflect(n, w)),
             Event::Transmit if self.transmittance.is_black() => None,

@@ -53,7 +53,7 @@ impl Scatter for Lambert {
         })
     }
 
-    fn follow(&self, _: DVec3, _: DVec3, _: Event) -> Option<DVec3> {
+    fn specular_direction(&self, _: DVec3, _: DVec3, _: Event) -> Option<DVec3> {
         None
     }
 

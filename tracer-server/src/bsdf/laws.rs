@@ -318,7 +318,7 @@ fn expected_counts(bsdf: &Bsdf, w: DVec3, from_eye: bool, samples: usize) -> Vec
         }
     }
     for (slot, event) in [(CELLS - 3, Event::Reflect), (CELLS - 2, Event::Transmit)] {
-        let drawn = bsdf.follow(N, w, event).map(|onward| density(onward, event));
+        let drawn = bsdf.specular_direction(N, w, event).map(|onward| density(onward, event));
         expected[slot] = drawn.unwrap_or(0.0) * samples as f64;
     }
     // Quadrature may tell a trifle more than all.
@@ -331,7 +331,11 @@ fn total_reflection_and_grazing_light_are_no_trap() {
     let glass = Bsdf::Dielectric(Dielectric::clear(1.5));
     // From inside, beyond the critical angle.
     let inside = (DVec3::new(1.0, 0.0, 0.0) - 0.1 * DVec3::Z).normalize();
-    assert_eq!(glass.follow(DVec3::Z, inside, Event::Transmit), None, "nothing is refracted");
+    assert_eq!(
+        glass.specular_direction(DVec3::Z, inside, Event::Transmit),
+        None,
+        "nothing is refracted"
+    );
     let mut rng = Rng::new(8, Stream::Laboratory, 5);
     for _ in 0..100 {
         let (_, event) = glass.sample(DVec3::Z, inside, rng.array()).expect("all is reflected");

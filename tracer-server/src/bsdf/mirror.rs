@@ -28,7 +28,7 @@ impl Scatter for Mirror {
     const HAS_DIRAC_LOBE: bool = true;
 
     fn sample(&self, n: DVec3, w: DVec3, _: [f64; 3]) -> Option<(DVec3, Event)> {
-        self.follow(n, w, Event::Reflect).map(|direction| (direction, Event::Reflect))
+        self.specular_direction(n, w, Event::Reflect).map(|direction| (direction, Event::Reflect))
     }
 
     fn invert(&self, _: DVec3, _: DVec3, _: DVec3, _: Event, rng: &mut Rng) -> [f64; 3] {
@@ -49,7 +49,7 @@ impl Scatter for Mirror {
         })
     }
 
-    fn follow(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
+    fn specular_direction(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
         let reflects = event == Event::Reflect && !self.fresnel.at(n.dot(w).abs()).is_black();
         reflects.then(|| reflect(n, w))
     }

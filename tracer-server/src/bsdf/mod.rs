@@ -91,7 +91,7 @@ pub trait Scatter {
 
     /// The only direction in which the Dirac `event` continues from `w`; `None` when it cannot
     /// happen there (total internal reflection, or no such lobe).
-    fn follow(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3>;
+    fn specular_direction(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3>;
 
     /// The event with which a vertex can be joined to any other by an explicit connection.
     fn connectable(&self) -> Option<Event>;
@@ -268,11 +268,11 @@ macro_rules! models {
                 }
             }
 
-            /// As [`Scatter::follow`].
+            /// As [`Scatter::specular_direction`].
             #[inline]
-            pub fn follow(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
+            pub fn specular_direction(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
                 match self {
-                    $($(Self::$form(model) => model.follow(n, w, event),)+)*
+                    $($(Self::$form(model) => model.specular_direction(n, w, event),)+)*
                 }
             }
 

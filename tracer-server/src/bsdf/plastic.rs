@@ -129,7 +129,7 @@ impl Scatter for Plastic {
         }
     }
 
-    fn follow(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
+    fn specular_direction(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
         let reflects = event == Event::Reflect && self.mirrored(n.dot(w).abs()) > 0.0;
         reflects.then(|| reflect(n, w))
     }

@@ -125,7 +125,7 @@ impl Scatter for RoughDielectric {
         lit.then_some(scattering)
     }
 
-    fn follow(&self, _: DVec3, _: DVec3, _: Event) -> Option<DVec3> {
+    fn specular_direction(&self, _: DVec3, _: DVec3, _: Event) -> Option<DVec3> {
         None
     }
 

@@ -36,6 +36,13 @@ pub(super) struct Walker {
     memory: VecDeque<Checkpoint>,
 }
 
+/// How far a walk has come.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Progress {
+    pub(super) steps: u64,
+    pub(super) accepted: u64,
+}
+
 /// A walk from a seed.
 #[derive(Debug)]
 struct Walk {
@@ -100,8 +107,9 @@ impl Walker {
     }
 
     /// Steps since it was seeded, and how many of them were accepted.
-    pub(super) fn counts(&self) -> (u64, u64) {
-        self.walk.as_ref().map_or((0, 0), |walk| (walk.steps, walk.accepted))
+    pub(super) fn progress(&self) -> Progress {
+        let progress = |walk: &Walk| Progress { steps: walk.steps, accepted: walk.accepted };
+        self.walk.as_ref().map(progress).unwrap_or_default()
     }
 
     /// Makes a path the current one; or says why it cannot.
@@ -185,7 +193,7 @@ impl Walker {
         walk.steps += 1;
         let id = PathId { chain: ChainId::EXPLORER, epoch: self.epoch, step: walk.chain.steps() };
         let moved = matches!(step.outcome, Outcome::Accepted { .. });
-        let told = FocusStep { number: self.number, id, ..walk.look(&scene, &step) };
+        let told = FocusStep { number: self.number, id, ..walk.describe(&scene, &step) };
         self.number += 1;
         walk.accepted += u64::from(moved);
         let after =
@@ -222,7 +230,7 @@ impl Walker {
         };
         let step = walk.chain.probe(&scene, mixture, index, &mut self.fan);
         let id = walk.current.header.id;
-        let seen = walk.look(&scene, &step);
+        let seen = walk.describe(&scene, &step);
         let told = FocusStep { number: self.number, id, fan: true, strategy, ..seen };
         self.number += 1;
         if let Some(after) = walk.current.after(&told) {
@@ -257,7 +265,7 @@ impl Walker {
 
 impl Walk {
     /// What is seen of a step that the chain has just tried. Number, id and fan are still to be set.
-    fn look(&self, scene: &Tracer<'_>, step: &Step) -> FocusStep {
+    fn describe(&self, scene: &Tracer<'_>, step: &Step) -> FocusStep {
         let mut rays = RayCounts::default();
         rays.add(scene);
         let failed = matches!(step.outcome, Outcome::Failed(_));
@@ -277,22 +285,22 @@ impl Walk {
             ..FocusStep::default()
         };
         match step.outcome {
-            Outcome::Failed(reason) => self.look_at_failure(scene, reason, told),
+            Outcome::Failed(reason) => self.describe_failure(scene, reason, told),
             Outcome::Rejected => {
                 let kept = self.chain.trial().map(|trial| trial.proposal.kept);
-                look_at_proposal(self.chain.proposed(), kept.unwrap_or_default(), told)
+                describe_proposal(self.chain.proposed(), kept.unwrap_or_default(), told)
             }
             // A step has moved the chain, a probe has not.
             Outcome::Accepted { kept_light, kept_eye } => {
                 let moved = self.chain.header().id.step != self.current.header.id.step;
                 let y = if moved { self.chain.current() } else { self.chain.proposed() };
                 let told = FocusStep { outcome: FocusOutcome::Accepted, ..told };
-                look_at_proposal(y, Kept { light: kept_light, eye: kept_eye }, told)
+                describe_proposal(y, Kept { light: kept_light, eye: kept_eye }, told)
             }
         }
     }
 
-    fn look_at_failure(&self, scene: &Tracer<'_>, reason: Failure, told: FocusStep) -> FocusStep {
+    fn describe_failure(&self, scene: &Tracer<'_>, reason: Failure, told: FocusStep) -> FocusStep {
         let outcome = FocusOutcome::Failed(reason as u8);
         let draft = self.chain.draft();
         let x = self.chain.current();
@@ -316,7 +324,7 @@ impl Walk {
 }
 
 /// What is seen of a complete proposal.
-fn look_at_proposal(y: &Path, kept: Kept, told: FocusStep) -> FocusStep {
+fn describe_proposal(y: &Path, kept: Kept, told: FocusStep) -> FocusStep {
     let end = y.vertices().len().saturating_sub(kept.eye);
     FocusStep {
         kept_light: kept.light,

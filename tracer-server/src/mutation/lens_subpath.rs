@@ -63,7 +63,7 @@ fn sent_on<'a>(
     let possible = local.bsdf().has_dirac_lobe();
     let events = [Event::Reflect, Event::Transmit].into_iter().filter(move |_| possible);
     events.filter_map(move |event| {
-        let onward = local.follow(back, event)?;
+        let onward = local.specular_direction(back, event)?;
         Some((event, onward, local.evaluate(onward, back, event)?.eye_pdf))
     })
 }

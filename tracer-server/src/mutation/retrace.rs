@@ -68,7 +68,7 @@ pub(super) fn repeat(
         return Err(Failure::LeftScene);
     }
     let local = scene.local(&at.anchor(), at.material);
-    let onward = local.follow(-direction, old.event).ok_or(Failure::KindChanged)?;
+    let onward = local.specular_direction(-direction, old.event).ok_or(Failure::KindChanged)?;
     at.set_event(old.event);
     Ok(onward)
 }

@@ -248,7 +248,7 @@ impl Lamp {
                 hittable: false,
             }),
             Self::Sky(sky) => {
-                let (color, pdf) = sky.look(-direction);
+                let (color, pdf) = sky.evaluate(-direction);
                 (!color.is_black()).then_some(Emission {
                     color,
                     pdf,
