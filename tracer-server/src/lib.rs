@@ -1,5 +1,6 @@
 //! The tracer: scenes, paths, mutations, chains, and the daemon that streams them.
 
+pub mod base;
 pub mod bsdf;
 pub mod chain;
 pub mod cli;
@@ -18,6 +19,7 @@ pub mod render;
 pub mod scene;
 pub mod service;
 pub mod steering;
+pub mod target;
 pub mod trade;
 pub mod verify;
 

@@ -8,7 +8,7 @@ use common::{ChainId, Diagnostics, PathBatch};
 use super::diagnose::{diagnose, longest};
 use super::monitor::LongestStay;
 use super::{
-    Bootstrap, Chain, ChainStatistics, Checkpoint, PilotSettings, Prospect, Watch, explore,
+    Bootstrap, Chain, ChainStatistics, Checkpoint, Kernel, PilotSettings, Prospect, Watch, explore,
 };
 use crate::film::Film;
 use crate::mutation::{Mixture, StrategyOptions};
@@ -58,7 +58,7 @@ impl Default for EnsembleSettings {
 /// Chains with their common film.
 #[derive(Debug)]
 pub struct Ensemble {
-    mixture: Arc<Mixture>,
+    kernel: Arc<Kernel>,
     prospects: Vec<Prospect>,
     bootstrap: Bootstrap,
     lanes: Vec<Lane>,
@@ -95,14 +95,14 @@ impl Ensemble {
                 checkpoints: Vec::new(),
             })
             .collect();
+        let kernel = Arc::new(Kernel::whole(mixture));
         let seeds = bootstrap.seeds(scene, settings.chains);
         for (id, seed) in (0_u32..).zip(seeds) {
-            let chain = Chain::new(ChainId(id), settings.seed, seed, &mixture);
+            let chain = Chain::new(ChainId(id), settings.seed, seed, &kernel);
             lanes[id as usize % LANES].chains.push(chain);
         }
         let threads = settings.threads.max(1);
-        let mixture = Arc::new(mixture);
-        Self { mixture, prospects, bootstrap, lanes, threads, steps: 0 }
+        Self { kernel, prospects, bootstrap, lanes, threads, steps: 0 }
     }
 
     /// The pool behind the seeds.
@@ -112,26 +112,31 @@ impl Ensemble {
 
     /// The strategies.
     pub fn mixture(&self) -> &Mixture {
-        &self.mixture
+        &self.kernel.mixture
     }
 
-    /// The strategies, to be kept for as long as their paths are.
-    pub fn shared_mixture(&self) -> Arc<Mixture> {
-        Arc::clone(&self.mixture)
+    /// The law of the chains.
+    pub fn kernel(&self) -> &Kernel {
+        &self.kernel
+    }
+
+    /// The law of the chains, to be kept for as long as their paths are.
+    pub fn shared_kernel(&self) -> Arc<Kernel> {
+        Arc::clone(&self.kernel)
     }
 
     /// Opens an epoch, with these weights of the strategies. The image goes on, since it is the same
     /// whatever the mixture; the counts begin anew.
     pub fn begin_epoch(&mut self, epoch: u32, weights: &[f64]) {
-        let mut mixture = Mixture::clone(&self.mixture);
-        mixture.set_weights(weights);
+        let mut kernel = Kernel::clone(&self.kernel);
+        kernel.mixture.set_weights(weights);
         for Lane { film, chains, rays, .. } in &mut self.lanes {
             *rays = RayCounts::default();
             for chain in chains {
-                chain.begin_epoch(epoch, &mixture, film);
+                chain.begin_epoch(epoch, &kernel, film);
             }
         }
-        self.mixture = Arc::new(mixture);
+        self.kernel = Arc::new(kernel);
     }
 
     /// The states of all chains when the last window on them was opened.
@@ -180,13 +185,13 @@ impl Ensemble {
     /// Every chain takes `steps` steps. With a `window`, the states that each chain passes through
     /// in its first `window` steps are returned, in the order of the lanes.
     pub fn advance(&mut self, scene: &Scene, steps: u64, window: Option<u64>) -> Vec<PathBatch> {
-        let mixture = &self.mixture;
+        let kernel = &self.kernel;
         let mut batches: Vec<Vec<PathBatch>> = self.lanes.iter().map(|_| Vec::new()).collect();
         parallel::for_each(
             self.threads.min(LANES),
             self.lanes.iter_mut().zip(batches.iter_mut()),
             || (),
-            |(), (lane, out)| *out = lane.advance(scene, mixture, steps, window),
+            |(), (lane, out)| *out = lane.advance(scene, kernel, steps, window),
         );
         self.steps += steps * self.chain_count() as u64;
         batches.into_iter().flatten().collect()
@@ -215,7 +220,7 @@ impl Ensemble {
 
     /// Counts of all chains together.
     pub fn statistics(&self) -> ChainStatistics {
-        let mut sum = ChainStatistics::new(self.mixture.len());
+        let mut sum = ChainStatistics::new(self.kernel.mixture.len());
         for lane in &self.lanes {
             for chain in &lane.chains {
                 sum.add(chain.statistics());
@@ -233,7 +238,7 @@ impl Lane {
     fn advance(
         &mut self,
         scene: &Scene,
-        mixture: &Mixture,
+        kernel: &Kernel,
         steps: u64,
         window: Option<u64>,
     ) -> Vec<PathBatch> {
@@ -246,13 +251,13 @@ impl Lane {
                 watch.begin(chain);
                 self.checkpoints.push(chain.checkpoint());
                 while watch.is_open() && left > 0 {
-                    let step = chain.step(&scene, mixture, &mut self.film);
+                    let step = chain.step(&scene, kernel, &mut self.film);
                     watch.see(chain, &step);
                     left -= 1;
                 }
             }
             for _ in 0..left {
-                chain.step(&scene, mixture, &mut self.film);
+                chain.step(&scene, kernel, &mut self.film);
             }
             chain.flush(&mut self.film);
             chain.settle();

@@ -108,8 +108,8 @@ impl<'a> Plant<'a> {
             // Kept before it is shown, so that whatever is picked can be found.
             let (normalization, _) = self.ensemble.normalization(self.scene);
             let checkpoints = self.ensemble.take_checkpoints();
-            let mixture = self.ensemble.shared_mixture();
-            self.archive.put(Round::new(mixture, normalization, WINDOW.min(steps), checkpoints));
+            let kernel = self.ensemble.shared_kernel();
+            self.archive.put(Round::new(kernel, normalization, WINDOW.min(steps), checkpoints));
         }
         for batch in batches {
             self.hub.publish_paths(batch);

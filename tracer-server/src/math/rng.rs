@@ -17,6 +17,8 @@ pub enum Stream {
     PathTracer = 4,
     /// One block of samples of the bidirectional path tracer.
     Bidirectional = 5,
+    /// The base samples of one replicate.
+    Base = 10,
     /// What `verify` draws on a user's scene.
     Verification = 7,
     /// The census of a scene's light before the chains start.
@@ -48,6 +50,12 @@ impl Rng {
         key[8..16].copy_from_slice(&(stream as u64).to_le_bytes());
         key[16..].copy_from_slice(&index.to_le_bytes());
         Self(Xoshiro256PlusPlus::from_seed(*blake3::hash(&key).as_bytes()))
+    }
+
+    /// Sixty-four random bits.
+    #[inline]
+    pub fn bits(&mut self) -> u64 {
+        self.0.next_u64()
     }
 
     /// A number in [0, 1) with 53 random bits.

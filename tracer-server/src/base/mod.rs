@@ -1,0 +1,114 @@
+//! The base of a picture: independent samples, evenly spread within a replicate, that carry what they
+//! find well. What they would find rarely and brightly is left to chains: see
+//! [`crate::target::Selective`].
+
+mod bidirectional;
+mod path;
+
+#[cfg(test)]
+mod laws;
+
+use glam::DVec2;
+
+use crate::film::Film;
+use crate::math::Strata;
+use crate::path::{Aim, Numbers, Strand};
+use crate::scene::Tracer;
+use crate::target::{Base, Selective};
+
+use bidirectional::Bidirectional;
+
+/// Draws the base samples of one replicate after the other.
+#[derive(Debug)]
+pub struct BaseSampler {
+    selective: Selective,
+    /// Room for the walks of bidirectional sampling.
+    walks: Option<Box<Bidirectional>>,
+}
+
+/// Where the samples of a pass belong.
+#[derive(Clone, Copy, Debug)]
+pub struct Pass {
+    /// The sequences of the replicate.
+    pub strata: Strata,
+    /// Number of the pass in the replicate: the number of each sample in its pixel's sequences.
+    pub index: u32,
+}
+
+/// The numbers of one sample.
+#[derive(Debug)]
+pub(crate) struct Spread {
+    strata: Strata,
+    index: u32,
+}
+
+impl Spread {
+    /// Those of the sample through a pixel in a pass.
+    #[inline]
+    pub(crate) fn new(pass: Pass, pixel: u64) -> Self {
+        Self { strata: pass.strata.of(pixel), index: pass.index }
+    }
+}
+
+impl Numbers for Spread {
+    #[inline]
+    fn row<const N: usize>(&mut self, strand: Strand, row: usize) -> [f64; N] {
+        let place = (strand as u64) << 32 | row as u64;
+        let point = self.strata.point(place, self.index);
+        std::array::from_fn(|i| point[i])
+    }
+}
+
+impl BaseSampler {
+    /// A sampler of the light that `selective` leaves to it.
+    pub fn new(scene: &Tracer<'_>, selective: Selective) -> Self {
+        let walks = match selective.base {
+            Base::Path => None,
+            Base::Bidirectional => Some(Box::new(Bidirectional::new(scene))),
+        };
+        Self { selective, walks }
+    }
+
+    /// Draws one sample through every pixel of the rows that `rows` gives, and adds what they carry to
+    /// the film: radiance in film units of the scene, the whole of which a pass over all rows
+    /// estimates once.
+    pub fn pass(
+        &mut self,
+        scene: &Tracer<'_>,
+        pass: Pass,
+        rows: std::ops::Range<u32>,
+        film: &mut Film,
+    ) {
+        let camera = scene.camera();
+        let (width, height) = (f64::from(camera.width), f64::from(camera.height));
+        for y in rows {
+            for x in 0..camera.width {
+                let pixel = y as usize * camera.width as usize + x as usize;
+                let mut numbers = Spread::new(pass, pixel as u64);
+                let [u, v, a, b] = numbers.row(Strand::Eye, 0);
+                let point = DVec2::new((f64::from(x) + u) / width, (f64::from(y) + v) / height);
+                let aim = Aim::through(scene, point, || [a, b]);
+                self.sample(scene, &aim, pixel, &mut numbers, film);
+            }
+        }
+    }
+
+    fn sample(
+        &mut self,
+        scene: &Tracer<'_>,
+        aim: &Aim,
+        pixel: usize,
+        numbers: &mut Spread,
+        film: &mut Film,
+    ) {
+        match &mut self.walks {
+            None => {
+                let color = path::sample(scene, aim, &self.selective, numbers);
+                if color.is_physical() {
+                    film.splat(pixel, color);
+                }
+            }
+            Some(walks) => walks.sample(scene, *aim, &self.selective, numbers, film),
+        }
+    }
+}
