@@ -16,8 +16,8 @@ use tracer_server::daemon::{Daemon, DaemonOptions};
 use tracer_server::scene::Scene;
 use tracer_server::scene::load::load;
 use viewer_client::app::Viewer;
-use viewer_client::connection::{Greeting, Link, Peer, Session};
-use viewer_client::status::Status;
+use viewer_client::source::connection::{Greeting, Link, Peer, Session};
+use viewer_client::source::status::Status;
 
 /// Nothing here takes that long; what does hangs.
 const PATIENCE: Duration = Duration::from_mins(1);

@@ -4,7 +4,7 @@ use common::{ChainId, DetailReply, Notice, PathDetail, PathHeader, PathId, Role,
 use common::{ExplorerCommand, FocusPath, Order, Seed};
 use proto::{NumberedOrder, TracerEvent, ViewerEvent};
 use tracer_server::daemon::Daemon;
-use viewer_client::connection::{Greeting, Peer, Session};
+use viewer_client::source::connection::{Greeting, Peer, Session};
 
 use crate::daemon::{PATIENCE, start};
 

@@ -9,7 +9,7 @@ use common::{
 };
 use proto::{NumberedOrder, TracerEvent, ViewerEvent};
 use tracer_server::daemon::Daemon;
-use viewer_client::connection::{Greeting, Peer, Session};
+use viewer_client::source::connection::{Greeting, Peer, Session};
 
 use crate::daemon::{PATIENCE, start};
 

@@ -15,7 +15,7 @@ use tracer_server::chain::EnsembleSettings;
 use tracer_server::daemon::{Daemon, DaemonOptions};
 use tracer_server::scene::Scene;
 use tracer_server::scene::load::load;
-use viewer_client::connection::{Greeting, Peer, Session};
+use viewer_client::source::connection::{Greeting, Peer, Session};
 
 /// Viewers, and how many of them never read.
 const CROWDS: [(usize, usize); 4] = [(0, 0), (1, 0), (4, 1), (16, 4)];

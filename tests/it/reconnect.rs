@@ -10,8 +10,8 @@ use tracer_server::scene::Scene;
 use tracer_server::scene::load::load;
 use viewer_client::app::Viewer;
 use viewer_client::command::Command;
-use viewer_client::connection::{Link, Peer};
-use viewer_client::status::{LinkState, Status};
+use viewer_client::source::connection::{Link, Peer};
+use viewer_client::source::status::{LinkState, Status};
 
 /// Nothing here takes that long; what does hangs.
 const PATIENCE: Duration = Duration::from_mins(1);

@@ -5,7 +5,7 @@ use std::time::Duration;
 use proto::TracerEvent;
 use tracer_server::hub::HubLimits;
 use tracer_server::service::{Access, Certificate, Security, Server, Token};
-use viewer_client::connection::{Bearer, Greeting, Peer, Session, SessionError, Trust};
+use viewer_client::source::connection::{Bearer, Greeting, Peer, Session, SessionError, Trust};
 
 use crate::stream::fixture;
 

@@ -14,7 +14,7 @@ use common::{
 use proto::{NumberedOrder, TracerEvent, ViewerEvent, WantedFilter};
 use tokio::task::JoinSet;
 use tokio_util::task::TaskTracker;
-use viewer_client::connection::{Greeting, Peer, Session};
+use viewer_client::source::connection::{Greeting, Peer, Session};
 
 use crate::daemon::{PATIENCE, start};
 

@@ -14,7 +14,7 @@ use tokio_util::sync::CancellationToken;
 use tracer_server::hub::HubLimits;
 use tracer_server::service::{Access, Security, Server, Token};
 use tracer_server::steering::Orders;
-use viewer_client::connection::{Bearer, Greeting, Peer, Session, Trust};
+use viewer_client::source::connection::{Bearer, Greeting, Peer, Session, Trust};
 
 use crate::stream::fixture::{self, soon};
 

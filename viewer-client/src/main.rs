@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Parser as _;
 use tracing_subscriber::EnvFilter;
-use viewer_client::cli::Cli;
+use viewer_client::app::cli::Cli;
 
 /// Exit code for bad usage or input.
 const BAD_INPUT: u8 = 2;
@@ -21,7 +21,7 @@ fn main() -> ExitCode {
         .with_ansi(std::io::stderr().is_terminal())
         .with_writer(std::io::stderr)
         .init();
-    match viewer_client::run::run(Cli::parse()) {
+    match viewer_client::app::run::run(Cli::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             // Nothing is left to tell the user with when stderr is closed.

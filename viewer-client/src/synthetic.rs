@@ -9,8 +9,8 @@ use common::{
 use glam::DVec3;
 use proto::ReceivedScene;
 
-use crate::connection::Delivery;
-use crate::status::LinkState;
+use crate::source::connection::Delivery;
+use crate::source::status::LinkState;
 
 /// A camera in front of the scene, which looks along -z.
 pub(crate) fn camera() -> Camera {

@@ -6,15 +6,15 @@ use common::{Attendee, Diagnostics, FilterCounts};
 
 use crate::camera::ViewCamera;
 use crate::command::PanelName;
-use crate::film::Film;
+use crate::imaging::film::Film;
 use crate::imaging::{FlipMap, Reference};
-use crate::model::Model;
-use crate::playback::Playback;
-use crate::selection::{Names, Selection};
 use crate::settings::Settings;
-use crate::status::Status;
-use crate::steering::Moment;
-use crate::store::Store;
+use crate::source::model::Model;
+use crate::source::playback::Playback;
+use crate::source::selection::{Names, Selection};
+use crate::source::status::Status;
+use crate::source::steering::Moment;
+use crate::source::store::Store;
 
 /// A view of the whole viewer, for the length of a frame.
 #[derive(Clone, Copy, Debug)]

@@ -8,9 +8,9 @@ use proto::{SceneAssembler, TracerEvent, ViewerEvent, scene_chunks, v1};
 use tracer_server::scene::Scene;
 use tracer_server::scene::builtin::BUILTINS;
 use tracer_server::scene::load::load;
+use viewer_client::app::share;
 use viewer_client::command::Command;
-use viewer_client::dump::{self, Stage};
-use viewer_client::share;
+use viewer_client::source::dump::{self, Stage};
 
 use super::campaign::{Answer, Target};
 use super::mutate::Mutator;

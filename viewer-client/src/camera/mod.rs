@@ -4,12 +4,13 @@ mod lens;
 #[cfg(test)]
 mod tests;
 
-pub use lens::{Bounds, Gate, Lens, NEAR};
+pub use lens::{Gate, Lens, NEAR};
 
 use common::Camera;
 use glam::Vec3;
 
 use crate::command::{CameraCommand, Place, Side};
+use crate::value::Bounds;
 
 /// Half the vertical field of view of the user's eye, as a tangent: 45 degrees in all.
 const TAN_Y: f32 = 0.414_213_56;

@@ -6,7 +6,7 @@ use common::{Event, MAX_VERTICES, PathHeader, StrategyId, VertexKind, VertexReco
 
 use super::Form;
 use super::words::{CommandError, Words};
-use crate::pick::Aim;
+use crate::draw::pick::Aim;
 
 /// What may be done with a path.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use common::{Floor, Rgb, mean_of_smallest, mean_ratio, relative_errors};
 
-use crate::film::Film;
+use crate::imaging::film::Film;
 
 /// What keeps dark pixels from ruling the error, in squared units of radiance.
 const FLOOR: Floor = Floor::Absolute(0.01);

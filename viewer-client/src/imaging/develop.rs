@@ -6,9 +6,9 @@ use common::{Diagnostics, Rgb};
 
 use super::{FlipMap, Reference};
 use crate::command::{Channel, Layer, ToneCurve};
-use crate::film::{Film, encode_srgb};
-use crate::format;
+use crate::imaging::film::{Film, encode_srgb};
 use crate::settings::ImageSettings;
+use crate::value::format;
 
 /// Low to high, from dark to light: also in grey, and with any kind of colour vision.
 const SEQUENTIAL: [[u8; 3]; 9] = [

@@ -10,7 +10,7 @@ use exr::prelude::{
 use thiserror::Error;
 
 use super::Reference;
-use crate::film::Film;
+use crate::imaging::film::Film;
 
 /// Widest and highest image that is read, in pixels.
 const MAX_SIDE: usize = 1 << 13;

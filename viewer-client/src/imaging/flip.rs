@@ -3,7 +3,7 @@
 use flip_rs::{HdrOptions, RgbImage, hdr_flip};
 
 use super::Reference;
-use crate::film::Film;
+use crate::imaging::film::Film;
 
 /// The difference that a person sees at each pixel who flips between image and reference.
 #[derive(Clone, Debug, PartialEq)]

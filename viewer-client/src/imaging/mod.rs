@@ -1,11 +1,14 @@
 //! The progressive image as numbers and as colours: what it is compared with, how it is shown, and
 //! how it leaves the viewer. Knows nothing of windows.
 
+pub mod background;
 mod compare;
 mod develop;
 mod exchange;
+pub mod film;
 mod flip;
 mod tev;
+pub mod view;
 
 pub use compare::{Comparison, Reference};
 pub use develop::{BAND, Legend, Ramp, Sources, develop, legend, map_values, ramp_color};

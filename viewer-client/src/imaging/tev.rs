@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use tev_client::{PacketCreateImage, PacketUpdateImage, TevClient};
 
-use crate::film::Film;
+use crate::imaging::film::Film;
 
 /// Where tev listens unless it is told otherwise.
 pub const TEV_ADDRESS: &str = "127.0.0.1:14158";

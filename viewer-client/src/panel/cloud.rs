@@ -5,7 +5,7 @@ use egui::{Button, ProgressBar, RichText, Ui};
 use super::Panel;
 use super::widgets::{Scale, choice, row, slider, toggle};
 use crate::command::{Blend, CloudCommand, ColorMode, ColorScale, Command, Marks, Switch};
-use crate::format;
+use crate::value::format;
 use crate::world::World;
 
 /// The settings of the cloud.

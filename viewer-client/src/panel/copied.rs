@@ -4,9 +4,9 @@ use common::Role;
 
 use super::filter::found;
 use crate::command::{CloudCommand, Command, PanelName, SceneCommand, Source, Switch};
-use crate::format;
 use crate::imaging::Comparison;
-use crate::status::LinkState;
+use crate::source::status::LinkState;
+use crate::value::format;
 use crate::world::World;
 
 /// The text of a part of the window; blank where it has nothing to say.

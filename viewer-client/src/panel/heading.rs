@@ -11,7 +11,7 @@ use super::widgets::scrolling;
 use crate::command::{Command, DeskCommand, LayoutCommand, Move, PanelName, Source, Switch};
 use crate::keys::{bindings, key_name};
 use crate::settings::Layout as Settled;
-use crate::theme;
+use crate::value::theme;
 use crate::world::World;
 
 /// Shows the heading of a section.

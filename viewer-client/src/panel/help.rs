@@ -7,7 +7,7 @@ use super::widgets::{capitalised, scrolling_within};
 use crate::command::{Command, LayoutCommand, Switch};
 use crate::keys::{Group, KeyPreset, MousePreset, bindings, key_name};
 use crate::settings::Layout as Settled;
-use crate::theme;
+use crate::value::theme;
 use crate::world::World;
 
 /// Widest that the sheet gets, in points.

@@ -4,7 +4,7 @@ use egui::{Align2, Area, Frame, Grid, Id, Order, Rect, RichText, Ui, vec2};
 
 use super::Panel;
 use crate::command::{Command, LayoutCommand, Switch};
-use crate::theme;
+use crate::value::theme;
 use crate::world::World;
 
 /// What to try first, and what it does.

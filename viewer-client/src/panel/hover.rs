@@ -5,7 +5,7 @@
 
 use egui::{Context, Id};
 
-use crate::steering::Moment;
+use crate::source::steering::Moment;
 use crate::world::World;
 
 /// Something that more than one panel shows.

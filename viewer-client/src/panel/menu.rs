@@ -8,7 +8,7 @@ use super::connect::ConnectMenu;
 use super::widgets::{capitalised, scrolling};
 use crate::command::{Command, LayoutCommand, PanelName, Switch, ThemeName};
 use crate::keys::{Binding, Group, bindings, key_name};
-use crate::theme;
+use crate::value::theme;
 use crate::world::World;
 
 /// Menus.

@@ -7,8 +7,8 @@ use egui::{Align2, Area, Frame, Id, Label, Order, RichText, Stroke, Ui, vec2};
 use super::Panel;
 use super::widgets::dot;
 use crate::command::Command;
-use crate::status::Notice;
-use crate::theme;
+use crate::source::status::Notice;
+use crate::value::theme;
 use crate::world::World;
 
 /// How long a word stays.

@@ -6,7 +6,7 @@ use super::Panel;
 use super::widgets::capitalised;
 use crate::command::{Command, LayoutCommand, Switch, forms};
 use crate::keys::{bindings, key_name};
-use crate::theme;
+use crate::value::theme;
 use crate::world::World;
 
 /// Width in points.

@@ -5,10 +5,10 @@ use egui::{FontFamily, Label, RichText, Sense, Slider, Ui};
 use super::Panel;
 use super::widgets::{Scale, dot, row, slider};
 use crate::command::{Command, PlayCommand, Switch};
-use crate::dump::{Outcome, Stage, Step};
-use crate::format;
-use crate::playback::Playback;
-use crate::theme;
+use crate::source::dump::{Outcome, Stage, Step};
+use crate::source::playback::Playback;
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// Warnings that are shown.

@@ -7,7 +7,7 @@ use super::widgets::{Scale, choice, row, slider, toggle};
 use crate::command::{
     CameraCommand, ClipSide, Command, Light, Lighting, SceneCommand, Shading, Switch,
 };
-use crate::format;
+use crate::value::format;
 use crate::world::World;
 
 /// The settings of the view.

@@ -7,8 +7,8 @@ use super::Panel;
 use super::hover::{self, Pointed};
 use super::widgets::{dot, empty_state, mark, reading, sparkline};
 use crate::command::Command;
-use crate::format;
-use crate::theme;
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// Live counts.

@@ -8,9 +8,9 @@ use egui::{Align, Label, Layout, RichText, Sense, Ui};
 use super::Panel;
 use super::widgets::dot;
 use crate::command::{Command, DeskCommand, LayoutCommand, Source, Switch};
-use crate::format;
-use crate::status::{LinkState, SILENCE, Status};
-use crate::theme;
+use crate::source::status::{LinkState, SILENCE, Status};
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// The state of the connection in one line.

@@ -9,7 +9,7 @@ use egui::{
 };
 
 use crate::command::Switch;
-use crate::theme;
+use crate::value::theme;
 
 /// Width of the labels of a form in points.
 const LABEL_WIDTH: f32 = 74.0;

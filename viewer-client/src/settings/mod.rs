@@ -2,17 +2,19 @@
 
 mod filter;
 mod layout;
+pub mod region;
+pub mod tree;
 
 pub use filter::{FilterSettings, KeptFilter};
 pub use layout::{Layout, SCALES, WIDTHS};
 
 use glam::{Vec3, Vec4};
 
-use crate::camera::Bounds;
 use crate::command::{
     Blend, Channel, ClipSide, CloudCommand, ColorMode, ColorScale, Handles, ImageCommand, Layer,
     Light, Lighting, Marks, SceneCommand, Shading, ToneCurve,
 };
+use crate::value::Bounds;
 
 /// Every choice.
 #[derive(Clone, Debug, Default, PartialEq)]

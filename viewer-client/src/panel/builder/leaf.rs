@@ -7,7 +7,7 @@ use common::{
 use egui::{ComboBox, DragValue, RichText, TextEdit, Ui};
 
 use super::{Context, add, fixed, joined_tests};
-use crate::theme;
+use crate::value::theme;
 
 /// Shows a condition; true when it was changed.
 pub(super) fn edit(ui: &mut Ui, leaf: &mut Leaf, context: &Context) -> bool {

@@ -9,7 +9,7 @@ use egui::{Align, Button, ComboBox, Label, Layout, RichText, Ui, vec2};
 use super::filter::complete::Vocabulary;
 use super::filter::vocabulary;
 use crate::command::FilterCommand;
-use crate::tree::negated;
+use crate::settings::tree::negated;
 use crate::world::World;
 
 /// Width of the menu at the end of a line and of the gap before it, in points.

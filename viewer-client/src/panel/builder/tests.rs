@@ -7,9 +7,9 @@ use egui_kittest::kittest::Queryable as _;
 
 use super::*;
 use crate::command::Command;
-use crate::model::Model;
 use crate::panel::Panel;
 use crate::panel::tests::Stage;
+use crate::source::model::Model;
 use crate::synthetic::{mesh, welcome};
 
 /// The builder alone.

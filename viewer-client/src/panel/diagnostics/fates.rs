@@ -7,10 +7,10 @@ use egui::{
     Color32, Label, Rect, Response, RichText, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
 
-use crate::format;
 use crate::panel::hover::{self, Pointed};
 use crate::panel::widgets::{dot, mark};
-use crate::theme;
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// Height of a bar in points.

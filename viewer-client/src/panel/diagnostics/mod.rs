@@ -11,9 +11,9 @@ use super::image::layer_button;
 use super::widgets::{dot, empty_state, reading};
 use super::{Panel, reveal};
 use crate::command::{Command, FilterCommand, ImageCommand, Layer, PanelName};
-use crate::format;
-use crate::region::{self, Region};
-use crate::theme;
+use crate::settings::region::{self, Region};
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// Potential scale reduction above which chains do not agree [Gelman and Rubin 1992].

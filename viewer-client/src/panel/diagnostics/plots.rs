@@ -6,9 +6,9 @@ use egui_plot::{
     GridMark, HLine, HoverPosition, ItemId, Line, LineStyle, Plot, PlotPoints, Points,
 };
 
-use crate::format;
 use crate::panel::hover::{self, Pointed};
-use crate::theme;
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// Height of a plot in points.

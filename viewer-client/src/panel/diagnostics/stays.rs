@@ -4,9 +4,9 @@ use common::{Diagnostics, ExplorerCommand, Order, PathHeader, PathId, Seed};
 use egui::{Grid, RichText, Ui};
 
 use crate::command::{Command, PathCommand};
-use crate::format;
 use crate::panel::hover::{self, Pointed};
-use crate::store::class_name;
+use crate::source::store::class_name;
+use crate::value::format;
 use crate::world::World;
 
 /// Shows the longest stays.

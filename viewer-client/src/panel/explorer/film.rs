@@ -6,10 +6,10 @@ use egui::{
 };
 
 use crate::command::Layer;
-use crate::format;
 use crate::imaging::{self, Sources};
 use crate::settings::ImageSettings;
-use crate::theme;
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// Widest that it gets, in points.

@@ -14,8 +14,8 @@ use super::Panel;
 use super::hover::{self, Pointed};
 use super::widgets::{Scale, dot, empty_state, row, slider, toggle};
 use crate::command::{Command, LayoutCommand};
-use crate::format;
-use crate::theme;
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// Slowest play that the slider offers; scripts can ask for less.

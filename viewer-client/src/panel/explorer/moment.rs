@@ -7,10 +7,10 @@ use egui::{
 };
 
 use crate::command::{Command, PathCommand};
-use crate::format;
 use crate::panel::widgets::{dot, row};
-use crate::steering::Moment;
-use crate::theme;
+use crate::source::steering::Moment;
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// Powers of ten from the middle of a factor's bar to its end.

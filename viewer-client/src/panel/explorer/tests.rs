@@ -11,7 +11,7 @@ use super::ExplorerPanel;
 use crate::command::{Command, PathCommand};
 use crate::panel::hover::{self, Pointed};
 use crate::panel::tests::{Stage, shows};
-use crate::steering::tests::{step, vertex};
+use crate::source::steering::tests::{step, vertex};
 
 /// A driver's panel over an explorer that has a path.
 fn driven() -> Stage {

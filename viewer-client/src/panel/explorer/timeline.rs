@@ -6,8 +6,8 @@ use egui::{RichText, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 use super::moment::fate;
 use crate::command::Command;
 use crate::panel::hover::{self, Pointed};
-use crate::steering::Moment;
-use crate::theme;
+use crate::source::steering::Moment;
+use crate::value::theme;
 use crate::world::World;
 
 /// Width of a bar with its gap, and height of the strip, in points.

@@ -7,11 +7,11 @@ use common::{
 use egui::{FontFamily, Label, RichText, Ui};
 
 use crate::command::{Command, FilterCommand, Switch};
-use crate::format;
 use crate::panel::widgets::row;
 use crate::settings::FilterSettings;
-use crate::theme;
-use crate::tree::{self, Source};
+use crate::settings::tree::{self, Source};
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// How much larger than needed a region becomes that is widened for a path.

@@ -11,7 +11,7 @@ use egui::{Button, DragValue, Label, RichText, Ui};
 use super::widgets::{dot, toggle};
 use super::{Panel, builder};
 use crate::command::{Command, FilterCommand, kind_name};
-use crate::theme;
+use crate::value::theme;
 use crate::world::World;
 
 pub(super) use text::vocabulary;

@@ -10,8 +10,8 @@ use egui_kittest::kittest::Queryable as _;
 
 use super::*;
 use crate::command::{Sphere, Switch};
-use crate::model::Model;
 use crate::panel::tests::{Stage, shows};
+use crate::source::model::Model;
 use crate::synthetic::{mesh, welcome};
 
 /// The panel before a scene with names.

@@ -12,7 +12,7 @@ use egui::{
 
 use super::complete::{self, Completion, Vocabulary};
 use crate::command::FilterCommand;
-use crate::theme;
+use crate::value::theme;
 use crate::world::World;
 
 /// Choices that are shown at most; typing finds the others.

@@ -3,8 +3,8 @@
 use egui::{Align2, CollapsingHeader, Grid, RichText, TextEdit, Ui};
 
 use crate::command::{Command, ImageCommand, Layer};
-use crate::format;
 use crate::imaging::{Comparison, TEV_ADDRESS};
+use crate::value::format;
 use crate::world::World;
 
 /// What the user has typed, and the newest comparison.

@@ -8,8 +8,8 @@ use egui::{
 use super::marks;
 use crate::command::{Command, FilterCommand, ImageCommand};
 use crate::panel::hover::{self, Pointed};
-use crate::region;
-use crate::theme;
+use crate::settings::region;
+use crate::value::theme;
 use crate::world::World;
 
 /// Tallest that the image gets, in shares of the window's height: the rest is for the statistics.

@@ -4,7 +4,7 @@ use common::FocusOutcome;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, vec2};
 
 use crate::panel::hover::{self, Pointed};
-use crate::theme;
+use crate::value::theme;
 use crate::world::World;
 
 /// Half the size of a cross, in points.

@@ -11,10 +11,10 @@ use egui::{Button, ColorImage, RichText, TextureHandle, TextureOptions, Ui};
 use super::Panel;
 use super::widgets::{Scale, capitalised, empty_state, slider};
 use crate::command::{Channel, Command, FilterCommand, ImageCommand, Layer, ToneCurve};
-use crate::format;
 use crate::imaging::{self, Sources};
-use crate::region;
 use crate::settings::ImageSettings;
+use crate::settings::region;
+use crate::value::format;
 use crate::world::World;
 
 /// The image as a texture, and what the user is about to do with it.

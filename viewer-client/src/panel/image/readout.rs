@@ -3,8 +3,8 @@
 use common::Rgb;
 use egui::{Color32, Grid, RichText, Ui};
 
-use crate::format;
 use crate::imaging;
+use crate::value::format;
 use crate::world::World;
 
 /// Letters of a value: a sign, digits, a point and an exponent.

@@ -5,10 +5,10 @@ use egui::{Grid, Ui};
 use super::light::color;
 use super::vertices::{Described, Line, numbers, title};
 use crate::command::Command;
-use crate::dump::{Act, Outcome, Walked};
-use crate::format;
-use crate::selection::Selection;
-use crate::units::Measure;
+use crate::source::dump::{Act, Outcome, Walked};
+use crate::source::selection::Selection;
+use crate::source::units::Measure;
+use crate::value::format;
 use crate::world::World;
 
 /// Stands for what is not known.

@@ -5,8 +5,8 @@ use egui::{Grid, Ui};
 
 use super::vertices::{Described, Line, numbers, title};
 use crate::command::Command;
-use crate::format;
-use crate::units::{Measure, Start};
+use crate::source::units::{Measure, Start};
+use crate::value::format;
 
 /// A row a vertex.
 pub(super) fn table(

@@ -16,10 +16,10 @@ use self::vertices::Described;
 use super::Panel;
 use super::widgets::{dot, empty_state, row};
 use crate::command::{Command, PathCommand, VertexStep};
-use crate::dump::Outcome;
-use crate::format;
-use crate::selection::Detail;
-use crate::theme;
+use crate::source::dump::Outcome;
+use crate::source::selection::Detail;
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// A daemon that has not answered for so long does not know the question.

@@ -4,10 +4,10 @@ use common::PathDetail;
 use egui::{Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use super::vertices::Described;
-use crate::format;
 use crate::panel::hover::{self, Pointed};
-use crate::selection::Selection;
-use crate::theme;
+use crate::source::selection::Selection;
+use crate::value::format;
+use crate::value::theme;
 
 /// Height of a bar and width of the words before it, in points.
 const HEIGHT: f32 = 17.0;

@@ -6,10 +6,10 @@ use egui::{Button, Grid, Label, Response, RichText, ScrollArea, Sense, Ui};
 use super::align::{aligned, triples};
 use super::{file, light};
 use crate::command::{Command, PathCommand, VertexStep};
-use crate::dump::Act;
 use crate::panel::hover::{self, Pointed};
 use crate::panel::widgets::row;
-use crate::selection::{Names, Selection};
+use crate::source::dump::Act;
+use crate::source::selection::{Names, Selection};
 
 /// Letters of a name in the table.
 const LONGEST_NAME: usize = 13;

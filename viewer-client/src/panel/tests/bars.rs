@@ -10,7 +10,7 @@ use egui_kittest::kittest::Queryable as _;
 use super::{Stage, shows};
 use crate::command::{CloudCommand, Command, LayoutCommand, Switch, ThemeName, WindowSide};
 use crate::panel::{self, Panel, Placed, help, hint, menu, status};
-use crate::status::LinkState;
+use crate::source::status::LinkState;
 use crate::synthetic::welcome;
 use crate::world::World;
 
@@ -192,7 +192,7 @@ fn the_first_steps_go_when_they_are_known() {
     assert!(!shows(&harness, "Got it"), "not for those who know");
     stage = Stage::new(hint::Hint);
     stage.settings.layout.hint = true;
-    stage.model = crate::model::Model::new(crate::synthetic::mesh());
+    stage.model = crate::source::model::Model::new(crate::synthetic::mesh());
     let mut harness = stage.harness();
     harness.run();
     harness.get_by_label("Got it").click();

@@ -8,7 +8,7 @@ use super::{Stage, diagnosed, shows, statistics};
 use crate::command::{Command, ImageCommand};
 use crate::panel::hover::{self, Pointed};
 use crate::panel::{diagnostics, statistics as counts};
-use crate::status::LinkState;
+use crate::source::status::LinkState;
 use crate::synthetic::welcome;
 
 #[test]
@@ -77,7 +77,7 @@ fn chains_that_disagree_raise_an_alarm_that_leads_there() {
     let layer = |layer| Command::Image(ImageCommand::Show(layer));
     assert_eq!(*show, layer(crate::command::Layer::Disagreement), "the map");
     assert_eq!(*map, layer(crate::command::Layer::Acceptance), "another one");
-    let [u0, v0, ..] = crate::region::region_of(text).expect("a rectangle");
+    let [u0, v0, ..] = crate::settings::region::region_of(text).expect("a rectangle");
     assert!((u0 - 2.0 / 40.0).abs() < 1e-7 && (v0 - 4.0 / 30.0).abs() < 1e-7, "{text}");
     assert_eq!(explore.to_string(), "explorer seed 0.0.0", "the path where a chain stayed");
     assert_eq!(show_path.to_string(), "path stay 0", "and the same path in the view");

@@ -8,7 +8,7 @@ use super::*;
 use crate::command::{DeskCommand, FilterCommand, LayoutCommand, Move, Source, Switch};
 use crate::keys::MousePreset;
 use crate::panel::{copied, heading, image, status, viewport};
-use crate::status::LinkState;
+use crate::source::status::LinkState;
 use crate::synthetic::{batch, welcome};
 
 /// A heading alone.

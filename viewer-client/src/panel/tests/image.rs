@@ -110,7 +110,7 @@ fn a_pixel_or_a_rectangle_of_the_image_becomes_the_filter() {
     harness.drop_at(at(10.5, 5.5));
     harness.run();
     let text = filter(&mut harness);
-    let [u0, v0, u1, v1] = crate::region::region_of(&text).expect("a rectangle");
+    let [u0, v0, u1, v1] = crate::settings::region::region_of(&text).expect("a rectangle");
     assert!((u0 - 0.25).abs() < 1e-7 && (v0 - 5.0 / 30.0).abs() < 1e-7, "{text}");
     assert!((u1 - 11.0 / 40.0).abs() < 1e-6 && (v1 - 6.0 / 30.0).abs() < 1e-6, "{text}");
     assert!(text.contains("edges >= 3"), "the other condition stays: {text}");
@@ -121,7 +121,7 @@ fn a_pixel_or_a_rectangle_of_the_image_becomes_the_filter() {
     harness.drop_at(at(20.5, 10.5));
     harness.run();
     let text = filter(&mut harness);
-    let [u0, v0, u1, v1] = crate::region::region_of(&text).expect("a rectangle");
+    let [u0, v0, u1, v1] = crate::settings::region::region_of(&text).expect("a rectangle");
     let expected = [4.0 / 40.0, 3.0 / 30.0, 21.0 / 40.0, 11.0 / 30.0];
     for (value, expected) in [u0, v0, u1, v1].into_iter().zip(expected) {
         assert!((value - expected).abs() < 1e-6, "{text}");
@@ -184,7 +184,7 @@ fn maps_wait_for_the_daemon() {
 #[test]
 fn a_pixel_that_is_pointed_at_is_told_to_the_view() {
     let mut stage = image_stage(false);
-    stage.selection = Some(super::paths::selected(crate::selection::Detail::Unasked));
+    stage.selection = Some(super::paths::selected(crate::source::selection::Detail::Unasked));
     let mut harness = stage.harness();
     harness.run();
     let film = harness.get_by_role_and_label(WidgetRole::Image, "Film").rect();

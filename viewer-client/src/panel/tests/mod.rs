@@ -17,12 +17,12 @@ use egui_kittest::kittest::Queryable as _;
 
 use super::*;
 use crate::camera::ViewCamera;
-use crate::film::Film;
 use crate::imaging::Reference;
-use crate::selection::Selection;
+use crate::imaging::film::Film;
 use crate::settings::Settings;
-use crate::status::Status;
-use crate::store::Store;
+use crate::source::selection::Selection;
+use crate::source::status::Status;
+use crate::source::store::Store;
 
 /// Everything a panel may read, and what it said.
 pub(super) struct Stage {
@@ -35,8 +35,8 @@ pub(super) struct Stage {
     pub(super) flip: Option<crate::imaging::FlipMap>,
     pub(super) selection: Option<Selection>,
     pub(super) recent: Vec<String>,
-    pub(super) model: Option<crate::model::Model>,
-    pub(super) playback: Option<crate::playback::Playback>,
+    pub(super) model: Option<crate::source::model::Model>,
+    pub(super) playback: Option<crate::source::playback::Playback>,
     pub(super) scrub: Option<u64>,
     panel: Option<Box<dyn Panel>>,
     pub(super) said: Vec<Command>,

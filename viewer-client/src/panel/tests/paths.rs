@@ -11,7 +11,7 @@ use super::{Stage, shows};
 use crate::command::{Command, PathCommand, VertexStep};
 use crate::panel::hover::{self, Pointed};
 use crate::panel::{path, playback};
-use crate::selection::{Detail, Selection};
+use crate::source::selection::{Detail, Selection};
 use crate::synthetic::welcome;
 
 /// A path of two edges on the room, with made-up numbers.
@@ -42,7 +42,7 @@ pub(super) fn numbers() -> PathDetail {
 fn path_panel(detail: Detail) -> Harness<'static, Stage> {
     let mut stage = Stage::new(path::PathPanel::default());
     stage.status.welcome(welcome());
-    stage.model = crate::model::Model::new(crate::synthetic::mesh());
+    stage.model = crate::source::model::Model::new(crate::synthetic::mesh());
     stage.selection = Some(selected(detail));
     stage.harness()
 }
@@ -101,7 +101,7 @@ fn numbers_that_are_not_there_are_explained() {
 #[test]
 fn a_path_as_text_has_all_numbers() {
     let mesh = crate::synthetic::mesh();
-    let names = crate::selection::Names { frame: None, strategies: &[], mesh: Some(&mesh) };
+    let names = crate::source::selection::Names { frame: None, strategies: &[], mesh: Some(&mesh) };
     let text = selected(Detail::Known(Arc::new(numbers()))).text(&names);
     for part in [
         "class D D D",
@@ -138,19 +138,19 @@ fn the_path_panel_tells_all_of_a_path() {
 }
 
 /// The panel of the path that a file shows last.
-fn of_file(file: crate::dump::Stage) -> Harness<'static, Stage> {
+fn of_file(file: crate::source::dump::Stage) -> Harness<'static, Stage> {
     let mut stage = Stage::new(path::PathPanel::default());
     let act = file.acts.last().expect("a path");
     let detail = Detail::Missing("A file of paths does not tell them.".to_owned());
     let selection = Selection::new(act.header, act.vertices.clone());
     stage.selection = Some(Selection { detail, ..selection });
-    stage.playback = Some(crate::playback::Playback::new(file));
+    stage.playback = Some(crate::source::playback::Playback::new(file));
     stage.harness()
 }
 
 #[test]
 fn a_path_of_a_file_claims_what_the_file_tells() {
-    let mut silent = of_file(crate::dump::tests::stage_with_numbers());
+    let mut silent = of_file(crate::source::dump::tests::stage_with_numbers());
     silent.run();
     assert!(shows(&silent, "Record of line 1"), "where it is");
     for text in ["seed", "chain 0", "a = 1.0000", "0 steps"] {
@@ -164,7 +164,7 @@ fn a_path_of_a_file_claims_what_the_file_tells() {
     for text in ["f/p light", "0.0100", "0.2200", "Throughputs, geometry terms"] {
         assert!(shows(&silent, text), "`{text}` is missing");
     }
-    let mut annotated = of_file(crate::dump::tests::stage());
+    let mut annotated = of_file(crate::source::dump::tests::stage());
     annotated.run();
     for text in ["chain 4, step 3", "a = 0.5000", "0 steps", "Densities, throughputs"] {
         assert!(shows(&annotated, text), "`{text}` is missing");
@@ -174,7 +174,7 @@ fn a_path_of_a_file_claims_what_the_file_tells() {
 #[test]
 fn a_file_of_paths_is_stepped_and_told() {
     let mut stage = Stage::new(playback::PlaybackPanel);
-    let mut file = crate::playback::Playback::new(crate::dump::tests::stage());
+    let mut file = crate::source::playback::Playback::new(crate::source::dump::tests::stage());
     file.apply(crate::command::PlayCommand::To(2));
     stage.playback = Some(file);
     let mut harness = stage.harness();

@@ -11,10 +11,10 @@ use glam::Vec3;
 use super::paths::{numbers, selected};
 use super::{Stage, shows};
 use crate::command::{CameraCommand, Command, PathCommand};
-use crate::model::Model;
 use crate::panel::hover::{self, Pointed};
 use crate::panel::viewport;
-use crate::selection::{Detail, Selection};
+use crate::source::model::Model;
+use crate::source::selection::{Detail, Selection};
 use crate::synthetic::{batch, camera, mesh, welcome};
 
 /// A view of the made-up scene with one path through its middle.

@@ -11,8 +11,8 @@ use super::highlight::arrow_head;
 use super::overlay::{MARGIN, veil};
 use super::project::Projector;
 use crate::panel::hover;
-use crate::steering::Moment;
-use crate::theme;
+use crate::source::steering::Moment;
+use crate::value::theme;
 use crate::world::World;
 
 /// Widths in points.

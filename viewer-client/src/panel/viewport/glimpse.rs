@@ -7,11 +7,12 @@ use egui::{Color32, Painter, Pos2, Response, RichText, Stroke, Ui};
 use super::TOLERANCE;
 use super::highlight::arrow_head;
 use super::project::Projector;
-use crate::format;
+use crate::draw::pick::Sight;
 use crate::panel::hover::{self, Pointed};
 use crate::panel::widgets::dot;
-use crate::selection::{Selection, Sight};
-use crate::theme;
+use crate::source::selection::Selection;
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// A cursor that has not moved for so long rests.

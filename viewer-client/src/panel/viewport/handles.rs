@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use super::project::Projector;
 use crate::command::Handles;
-use crate::theme;
+use crate::value::theme;
 
 /// How near to a handle the cursor must be, in points.
 pub(super) const REACH: f32 = 11.0;
@@ -151,10 +151,10 @@ mod tests {
     use egui_kittest::kittest::Queryable as _;
 
     use super::*;
-    use crate::camera::Bounds;
     use crate::command::{Command, FilterCommand, Light, SceneCommand, Sphere};
     use crate::panel::tests::Stage;
     use crate::panel::viewport::Viewport;
+    use crate::value::Bounds;
 
     /// What is said when the x axis of a ball of this radius in the middle is pulled outwards.
     fn pull(mut stage: Stage, radius: f32) -> Vec<Command> {

@@ -6,8 +6,8 @@ use glam::Vec3;
 use super::overlay::veil;
 use super::project::Projector;
 use crate::panel::hover::{self, Pointed};
-use crate::selection::Selection;
-use crate::theme;
+use crate::source::selection::Selection;
+use crate::value::theme;
 use crate::world::World;
 
 /// Width of the line and of the rim round it, in points.

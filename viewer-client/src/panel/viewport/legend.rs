@@ -7,8 +7,8 @@ use egui::{Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
 use super::overlay::{AXES, MARGIN, veil};
 use crate::command::{ColorMode, ColorScale};
-use crate::format;
-use crate::theme;
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// Room for the dot before an entry, in points.

@@ -5,7 +5,7 @@ use egui::{Align2, Color32, FontId, Painter, Response, Stroke, Ui, vec2};
 use super::handles::{Ball, Hold};
 use super::project::Projector;
 use crate::command::{Command, Handles, Light, SceneCommand};
-use crate::theme;
+use crate::value::theme;
 use crate::world::World;
 
 /// Half the length of its handles in radii of the scene.

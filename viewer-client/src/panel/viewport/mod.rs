@@ -19,7 +19,7 @@ use egui::{Role, Sense, Ui, WidgetInfo};
 use self::project::Projector;
 use super::{Panel, note_pick};
 use crate::command::{Command, PathCommand};
-use crate::gpu::ViewportCallback;
+use crate::draw::gpu::ViewportCallback;
 use crate::world::World;
 
 /// How far off a click may be, in points.

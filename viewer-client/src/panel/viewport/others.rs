@@ -5,7 +5,7 @@ use egui::{Align2, Color32, FontId, Painter, Shape, Stroke, vec2};
 use glam::Vec3;
 
 use super::project::Projector;
-use crate::theme;
+use crate::value::theme;
 use crate::world::World;
 
 /// Draws every other viewer's eye with its name, and what it looks at.

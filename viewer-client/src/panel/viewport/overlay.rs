@@ -7,9 +7,9 @@ use glam::Vec3;
 
 use super::project::Projector;
 use super::{ghost, highlight, light, others, pointed, selectors};
-use crate::format;
-use crate::status::LinkState;
-use crate::theme;
+use crate::source::status::LinkState;
+use crate::value::format;
+use crate::value::theme;
 use crate::world::World;
 
 /// Distance of texts from the edge in points.

@@ -6,9 +6,9 @@ use shaders::{FrameUniforms, PALETTE_SIZE, RAMP_SIZE};
 
 use crate::camera::NEAR;
 use crate::command::{Blend, ColorMode, ColorScale, Light, Lighting, Marks, Shading};
-use crate::gpu::{Crossing, PageRange, Picture};
+use crate::draw::gpu::{Crossing, PageRange, Picture};
 use crate::settings::SceneSettings;
-use crate::theme;
+use crate::value::theme;
 use crate::world::World;
 
 /// Opacity of surfaces seen from behind when backs are cut away.

@@ -7,9 +7,9 @@ use glam::Vec3;
 use super::highlight::arrow_head;
 use super::project::Projector;
 use crate::camera::Lens;
+use crate::draw::pick;
 use crate::panel::hover::{self, Pointed};
-use crate::pick;
-use crate::theme;
+use crate::value::theme;
 use crate::world::World;
 
 /// Draws a long stay, or the ray through a point of the image.

@@ -4,7 +4,7 @@ use egui::{Pos2, Rect, vec2};
 use glam::Vec3;
 
 use crate::camera::{Lens, NEAR};
-use crate::pick::Aim;
+use crate::draw::pick::Aim;
 
 /// Where points of the scene are seen in the viewport.
 #[derive(Clone, Copy, Debug)]

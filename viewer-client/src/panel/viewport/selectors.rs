@@ -6,8 +6,8 @@ use glam::{DVec3, Vec3};
 use super::handles::{Ball, Hold, REACH};
 use super::project::Projector;
 use crate::command::{Command, FilterCommand, Sphere, kind_name};
-use crate::pick;
-use crate::theme;
+use crate::draw::pick;
+use crate::value::theme;
 use crate::world::World;
 
 /// A new sphere's radius in radii of the scene.

@@ -1,0 +1,165 @@
+//! What is known of the daemon and of the way to it.
+
+use std::time::{Duration, Instant};
+
+use common::{FilterReply, Role, Statistics, Welcome};
+
+use crate::source::steering::Steering;
+use crate::value::format;
+use crate::value::rates::{History, RateMeter};
+use crate::value::trends::Trends;
+
+/// How the connection is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LinkState {
+    /// There is none.
+    Disconnected {
+        /// What went wrong last.
+        reason: String,
+        /// When the next attempt is due.
+        retry_at: Instant,
+    },
+    /// An attempt is under way.
+    Connecting,
+    /// The daemon has welcomed the viewer.
+    Connected,
+}
+
+/// A word to the user, shown for some seconds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Notice {
+    /// What happened, or what went wrong and what to do.
+    pub text: String,
+    /// It went wrong.
+    pub is_bad: bool,
+    /// When it was said.
+    pub at: Instant,
+}
+
+/// What is known of the daemon and of the way to it.
+#[derive(Debug)]
+pub struct Status {
+    /// Where the daemon is, HOST:PORT.
+    pub address: String,
+    /// The daemon is part of this program.
+    pub embedded: bool,
+    /// How the connection is.
+    pub link: LinkState,
+    /// What the daemon said of itself.
+    pub welcome: Option<Welcome>,
+    /// The newest counts.
+    pub statistics: Option<Statistics>,
+    /// Mutations a second over the last minutes.
+    pub mutation_history: History,
+    /// How the chains do over time.
+    pub trends: Trends,
+    /// Paths received.
+    pub path_rate: RateMeter,
+    /// Bytes of paths received.
+    pub byte_rate: RateMeter,
+    /// How often the connection was made anew.
+    pub reconnects: u32,
+    /// The answer to the filter that was set last.
+    pub filter: Option<FilterReply>,
+    /// Who steers, and what the explorer does.
+    pub steering: Steering,
+    /// How long the daemon took to answer a question last, way and back.
+    pub latency: Option<Duration>,
+    /// When something came from the daemon last.
+    heard: Option<Instant>,
+    /// When somebody looked last whether something had come.
+    listened: Option<Instant>,
+    /// The newest word to the user.
+    pub notice: Option<Notice>,
+}
+
+/// A daemon that says nothing for so long does not answer.
+pub const SILENCE: Duration = Duration::from_secs(3);
+
+impl Status {
+    /// Before the first attempt to reach `address`.
+    pub fn new(address: String, embedded: bool) -> Self {
+        Self {
+            address,
+            embedded,
+            link: LinkState::Connecting,
+            welcome: None,
+            statistics: None,
+            mutation_history: History::default(),
+            trends: Trends::default(),
+            path_rate: RateMeter::default(),
+            byte_rate: RateMeter::default(),
+            reconnects: 0,
+            filter: None,
+            steering: Steering::default(),
+            latency: None,
+            heard: None,
+            listened: None,
+            notice: None,
+        }
+    }
+
+    /// True while data may come.
+    pub fn is_connected(&self) -> bool {
+        self.link == LinkState::Connected
+    }
+
+    /// Notes that somebody looked whether something had come, and whether it had.
+    pub fn listen(&mut self, heard: bool, now: Instant) {
+        self.listened = Some(now);
+        if heard {
+            self.heard = Some(now);
+        }
+    }
+
+    /// How long the daemon had said nothing when somebody looked last, although the connection stands,
+    /// where that is longer than its figures, which come every second, ever take.
+    pub fn silence(&self) -> Option<Duration> {
+        // Figures come once the chains have begun; until then a daemon looks for light.
+        let speaks = self.is_connected() && self.statistics.is_some();
+        let (heard, listened) = self.heard.zip(self.listened).filter(|_| speaks)?;
+        Some(listened.saturating_duration_since(heard)).filter(|silence| *silence >= SILENCE)
+    }
+
+    /// Mutations a second as they are made now: none while the chains rest or out of reach, whatever
+    /// was counted before.
+    pub fn mutation_rate(&self) -> f64 {
+        let resting = self.steering.chains.as_ref().is_some_and(|chains| !chains.running);
+        let statistics = self.statistics.as_ref().filter(|_| self.is_connected() && !resting);
+        statistics.map_or(0.0, |statistics| statistics.mutations_per_second)
+    }
+
+    /// What this viewer may do now.
+    pub fn role(&self) -> Role {
+        self.welcome.as_ref().map_or(Role::Observer, |w| self.steering.role(w.session))
+    }
+
+    /// Says something to the user.
+    pub fn say(&mut self, said: Result<String, String>) {
+        let is_bad = said.is_err();
+        let text = said.unwrap_or_else(|problem| problem);
+        let text = format::sentence(&text);
+        self.notice = Some(Notice { text, is_bad, at: Instant::now() });
+    }
+
+    /// Takes a daemon's welcome; it is another daemon, or the same one anew.
+    pub fn welcome(&mut self, welcome: Welcome) {
+        if self.welcome.is_some() {
+            self.reconnects += 1;
+        }
+        self.welcome = Some(welcome);
+        self.statistics = None;
+        self.filter = None;
+        self.latency = None;
+        self.steering.clear();
+        self.mutation_history.clear();
+        self.trends.clear();
+    }
+
+    /// Takes new counts.
+    pub fn statistics(&mut self, statistics: Statistics) {
+        self.mutation_history.push(statistics.mutations_per_second as f32);
+        self.trends.push(&statistics);
+        self.statistics = Some(statistics);
+    }
+}
