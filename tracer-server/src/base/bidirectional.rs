@@ -21,7 +21,7 @@ impl Bidirectional {
         &mut self,
         scene: &Tracer<'_>,
         aim: Aim,
-        selective: &Selective,
+        selective: Selective,
         numbers: &mut Spread,
         film: &mut Film,
     ) {

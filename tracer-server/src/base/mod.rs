@@ -1,5 +1,6 @@
-//! The base of a picture: independent samples, evenly spread within a replicate, that carry what they
-//! find well. What they would find rarely and brightly is left to chains: see
+//! The base of a picture: independent samples that carry what they find well.
+//!
+//! They are evenly spread within a replicate. What they would find rarely and brightly is left to chains: see
 //! [`crate::target::Selective`].
 
 mod bidirectional;
@@ -103,12 +104,12 @@ impl BaseSampler {
     ) {
         match &mut self.walks {
             None => {
-                let color = path::sample(scene, aim, &self.selective, numbers);
+                let color = path::sample(scene, aim, self.selective, numbers);
                 if color.is_physical() {
                     film.splat(pixel, color);
                 }
             }
-            Some(walks) => walks.sample(scene, *aim, &self.selective, numbers, film),
+            Some(walks) => walks.sample(scene, *aim, self.selective, numbers, film),
         }
     }
 }

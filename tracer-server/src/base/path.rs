@@ -20,7 +20,7 @@ const SURE_EDGES: usize = 4;
 pub(super) fn sample(
     scene: &Tracer<'_>,
     aim: &Aim,
-    selective: &Selective,
+    selective: Selective,
     numbers: &mut impl Numbers,
 ) -> Rgb {
     let mut sum = Rgb::BLACK;

@@ -282,8 +282,7 @@ impl Chain {
         // The strategy must also be chosen in the reverse move: Z(x) / Z(y), or never.
         let applies_back = kernel.mixture.get(strategy).applicable(&self.proposal);
         let after = kernel.stand(&self.proposal);
-        let mixing =
-            if applies_back { before.mixture_total / after.mixture_total } else { 0.0 };
+        let mixing = if applies_back { before.mixture_total / after.mixture_total } else { 0.0 };
         self.trial = Some(Trial {
             proposal: *proposal,
             mixture_current: before.mixture_total,

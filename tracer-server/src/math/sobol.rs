@@ -33,6 +33,7 @@ impl Strata {
     }
 
     /// The sequences that belong to one of many things, such as a pixel.
+    #[must_use]
     #[inline]
     pub fn of(self, thing: u64) -> Self {
         Self { key: mix(self.key ^ mix(thing.wrapping_add(0x9e37_79b9_7f4a_7c15))) }
@@ -45,7 +46,8 @@ impl Strata {
         let key = self.of(place).key;
         let coarse = sample_4d(index & (MOST_POINTS - 1), 0, key as u32);
         std::array::from_fn(|axis| {
-            let shift = mix(key.wrapping_add((axis as u64 + 1).wrapping_mul(0xd1b5_4a32_d192_ed03)));
+            let shift =
+                mix(key.wrapping_add((axis as u64 + 1).wrapping_mul(0xd1b5_4a32_d192_ed03)));
             // 23 bits of the sequence above 30 of nothing.
             let word = ((f64::from(coarse[axis]) * f64::from(1 << 23)) as u64) << 30;
             (word ^ shift >> 11) as f64 * SCALE

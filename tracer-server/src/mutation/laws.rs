@@ -25,13 +25,7 @@ use crate::verify::judge::{Finding, Law, Subject, Verdict, examine};
 const FAMILY: usize = 40;
 
 /// Puts a way of proposing to the test on `samples` bidirectional samples, as `verify` does.
-fn judged(
-    name: &str,
-    scene: &Scene,
-    walk: Walk<'_>,
-    test: Test,
-    samples: u64,
-) -> Vec<Finding> {
+fn judged(name: &str, scene: &Scene, walk: Walk<'_>, test: Test, samples: u64) -> Vec<Finding> {
     let run = Run { test, samples, seed: 20, number: 0, threads: 2 };
     let subject = Subject { name, walk, family: FAMILY };
     let laws = [(Law::Invariance, "invariance"), (Law::Flow, "flow")];
@@ -64,12 +58,7 @@ fn whole<'a>(propose: &'a Propose<'a>) -> Walk<'a> {
 
 /// With `samples` bidirectional samples for proposals, and three times as many for steps; at least
 /// `least` functions must be exercised.
-fn assert_lawful_by(
-    name: &str,
-    scene: &Scene,
-    walk: Walk<'_>,
-    (samples, least): (u64, usize),
-) {
+fn assert_lawful_by(name: &str, scene: &Scene, walk: Walk<'_>, (samples, least): (u64, usize)) {
     for (test, samples) in [(Test::Steps(3), 3 * samples), (Test::Proposals(5), samples)] {
         let findings = judged(name, scene, walk, test, samples);
         assert!(findings[0].judged >= least, "{findings:?}: too few functions were exercised");
@@ -262,10 +251,7 @@ fn assert_found_on(name: &str, scene: &Scene, walk: Walk<'_>, test: Test, sample
     let findings = judged(name, scene, walk, test, samples);
     let broken: Vec<_> = findings.iter().filter(|f| f.verdict == Verdict::Fail).collect();
     let worst = broken.iter().map(|f| f.worst).fold(0.0, f64::max);
-    println!(
-        "{name:80} {worst:6.1} of {:4} at {}",
-        findings[0].judged, findings[0].samples
-    );
+    println!("{name:80} {worst:6.1} of {:4} at {}", findings[0].judged, findings[0].samples);
     assert!(worst > 6.0, "{name} was not found: {findings:?}");
 }
 

@@ -74,10 +74,11 @@ impl Target {
     }
 
     /// The product of two targets.
+    #[must_use]
     pub fn times(self, other: Self) -> Self {
         match (self, other) {
             (Self::Whole, only) | (only, Self::Whole) => only,
-            (a, b) => Self::Product(Box::new([a, b])),
+            (a, b) => Self::Product(Box::new(<[Self; 2]>::from((a, b)))),
         }
     }
 
@@ -87,9 +88,7 @@ impl Target {
             Self::Whole => "whole".to_owned(),
             Self::Selective(_) => "selective".to_owned(),
             Self::Equalised(_) => "equalised".to_owned(),
-            Self::Product(parts) => {
-                parts.iter().map(Self::name).collect::<Vec<_>>().join(", ")
-            }
+            Self::Product(parts) => parts.iter().map(Self::name).collect::<Vec<_>>().join(", "),
         }
     }
 }

@@ -64,7 +64,7 @@ pub struct Selective {
 impl Selective {
     /// `g` of a path: the share of its light that is the chains'.
     #[inline]
-    pub fn chains_share(&self, x: &Path) -> f64 {
+    pub fn chains_share(self, x: &Path) -> f64 {
         let s = self.scaled(self.base.density_sum(x));
         1.0 / (1.0 + s * s)
     }
@@ -72,14 +72,14 @@ impl Selective {
     /// `1 - g` of a path whose sum `S_B` is `density_sum`: the share of its light that is the base
     /// sampler's.
     #[inline]
-    pub fn base_share(&self, density_sum: f64) -> f64 {
+    pub fn base_share(self, density_sum: f64) -> f64 {
         let s = self.scaled(density_sum);
         1.0 / (1.0 + 1.0 / (s * s))
     }
 
     /// `tau S_B`; zero for what the base sampler cannot find, even where `tau` is infinite.
     #[inline]
-    fn scaled(&self, density_sum: f64) -> f64 {
+    fn scaled(self, density_sum: f64) -> f64 {
         if density_sum > 0.0 { self.tau * density_sum } else { 0.0 }
     }
 }

@@ -301,9 +301,8 @@ impl Hand {
         for _ in 0..test.steps() {
             gathered.tries += 1;
             let drawn = (walk.propose)(scene, x, rng, draft, y);
-            let (ratio, aim) = drawn.map_or((0.0, rho), |proposal| {
-                (proposal.ratio, walk.target.importance(y).rho)
-            });
+            let (ratio, aim) = drawn
+                .map_or((0.0, rho), |proposal| (proposal.ratio, walk.target.importance(y).rho));
             let a = acceptance(ratio * (aim / rho));
             gathered.not_finite += u64::from(a.is_none());
             // A chain refuses what is no number.
