@@ -16,6 +16,7 @@ pub mod mutation;
 pub mod parallel;
 pub mod path;
 pub mod render;
+pub mod replicate;
 pub mod scene;
 pub mod service;
 pub mod steering;

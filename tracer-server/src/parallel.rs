@@ -1,8 +1,25 @@
 //! Spreading work over threads without making the result depend on them.
 
 use std::ops::Range;
-use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 use std::thread;
+
+/// A wish that work should end, which anybody may utter and all workers hear.
+#[derive(Clone, Debug, Default)]
+pub struct Stop(Arc<AtomicBool>);
+
+impl Stop {
+    /// Utters it.
+    pub fn set(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// True once it was uttered.
+    pub fn is_set(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
 
 /// What `work` makes of the numbers in `range`, in their order, by `threads` workers that each have
 /// a state made by `start`.

@@ -12,9 +12,9 @@ mod laws;
 use glam::DVec2;
 
 use crate::film::Film;
-use crate::math::Strata;
+use crate::math::{Rng, Strata, Stream};
 use crate::path::{Aim, Numbers, Strand};
-use crate::scene::Tracer;
+use crate::scene::{RayCounts, Scene, Tracer};
 use crate::target::{Base, Selective};
 
 use bidirectional::Bidirectional;
@@ -58,6 +58,20 @@ impl Numbers for Spread {
         let point = self.strata.point(place, self.index);
         std::array::from_fn(|i| point[i])
     }
+}
+
+/// The mean work of a sample of path tracing, in rays: counted, over rays through random points of the
+/// film.
+pub fn work_of_paths(scene: &Scene) -> f64 {
+    const SAMPLES: u64 = 256;
+    let tracer = Tracer::new(scene);
+    let mut rng = Rng::new(0, Stream::Scout, u64::MAX);
+    for _ in 0..SAMPLES {
+        let aim = Aim::from_numbers(&tracer, &mut rng);
+        path::terms(&tracer, &aim, &mut rng, |_, _| ());
+    }
+    let counts = RayCounts::of(&tracer);
+    (2.4 * counts.rays as f64 + counts.shadow_rays as f64) / SAMPLES as f64
 }
 
 impl BaseSampler {

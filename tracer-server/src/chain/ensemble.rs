@@ -8,12 +8,14 @@ use common::{ChainId, Diagnostics, PathBatch};
 use super::diagnose::{diagnose, longest};
 use super::monitor::LongestStay;
 use super::{
-    Bootstrap, Chain, ChainStatistics, Checkpoint, Kernel, PilotSettings, Prospect, Watch, explore,
+    Chain, ChainStatistics, Checkpoint, Kernel, PilotSettings, Pool, PoolKey, Prospect, Source,
+    Survey, Watch, draw_pool, survey,
 };
 use crate::film::Film;
 use crate::mutation::{Mixture, StrategyOptions};
 use crate::parallel;
 use crate::scene::{RayCounts, Scene, Tracer};
+use crate::target::Target;
 
 /// Films that chains are spread over.
 ///
@@ -22,8 +24,8 @@ use crate::scene::{RayCounts, Scene, Tracer};
 /// more threads than this have work.
 pub const LANES: usize = 8;
 
-/// The pilot has one sample for each so many of the largest pool.
-const PILOT_SHARE: u64 = 32;
+/// The pilot has one sample for each so many of the pool.
+const PILOT_SHARE: u64 = 16;
 
 /// How chains are run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,10 +38,8 @@ pub struct EnsembleSettings {
     pub threads: usize,
     /// What the user wants of the strategies.
     pub strategies: StrategyOptions,
-    /// Samples drawn at most for the normalisation and the seeds.
+    /// Samples drawn for the normalisation and the seeds.
     pub bootstrap_samples: u64,
-    /// Relative standard error of the normalisation that is good enough.
-    pub precision: f64,
 }
 
 impl Default for EnsembleSettings {
@@ -49,8 +49,7 @@ impl Default for EnsembleSettings {
             chains: 128,
             threads: thread::available_parallelism().map_or(1, Into::into),
             strategies: StrategyOptions::default(),
-            bootstrap_samples: 1 << 19,
-            precision: 0.003,
+            bootstrap_samples: 1 << 16,
         }
     }
 }
@@ -60,7 +59,7 @@ impl Default for EnsembleSettings {
 pub struct Ensemble {
     kernel: Arc<Kernel>,
     prospects: Vec<Prospect>,
-    bootstrap: Bootstrap,
+    pool: Pool,
     lanes: Vec<Lane>,
     threads: usize,
     steps: u64,
@@ -79,14 +78,16 @@ impl Ensemble {
     /// Seeds the chains. Without light on the film there are no chains and the image stays black.
     /// `on_progress` hears the number of samples drawn for the seeds.
     pub fn new(scene: &Scene, settings: &EnsembleSettings, on_progress: impl FnMut(u64)) -> Self {
-        let bootstrap = Bootstrap::new(scene, &settings.into(), on_progress);
+        let key = PoolKey { seed: settings.seed, number: 0 };
+        let (samples, threads) = (settings.bootstrap_samples, settings.threads.max(1));
+        let pool = draw_pool(scene, (key, &Target::Whole), (samples, threads), on_progress);
         let camera = scene.camera();
         let pilot = PilotSettings {
             seed: settings.seed,
             threads: settings.threads,
-            samples: settings.bootstrap_samples.div_ceil(PILOT_SHARE),
+            samples: samples.div_ceil(PILOT_SHARE),
         };
-        let (mixture, prospects) = explore(scene, &settings.strategies, &pilot);
+        let Survey { mixture, prospects, .. } = survey(scene, &settings.strategies, &pilot);
         let mut lanes: Vec<Lane> = (0..LANES)
             .map(|_| Lane {
                 film: Film::new(camera.width, camera.height),
@@ -96,18 +97,19 @@ impl Ensemble {
             })
             .collect();
         let kernel = Arc::new(Kernel::whole(mixture));
-        let seeds = bootstrap.seeds(scene, settings.chains);
+        let tracer = Tracer::new(scene);
+        let seeds =
+            Source::new(&tracer, key, &Target::Whole).seeds(&pool, settings.chains);
         for (id, seed) in (0_u32..).zip(seeds) {
             let chain = Chain::new(ChainId(id), settings.seed, seed, &kernel);
             lanes[id as usize % LANES].chains.push(chain);
         }
-        let threads = settings.threads.max(1);
-        Self { kernel, prospects, bootstrap, lanes, threads, steps: 0 }
+        Self { kernel, prospects, pool, lanes, threads, steps: 0 }
     }
 
     /// The pool behind the seeds.
-    pub fn bootstrap(&self) -> &Bootstrap {
-        &self.bootstrap
+    pub fn pool(&self) -> &Pool {
+        &self.pool
     }
 
     /// The strategies.
@@ -205,7 +207,7 @@ impl Ensemble {
     /// The image in radiance of the file's units; black without steps.
     pub fn image(&self, scene: &Scene) -> Film {
         let mut image = self.splats();
-        let b = self.bootstrap.normalization() * scene.radiance_scale();
+        let b = self.pool.normalization() * scene.radiance_scale();
         let pixels = scene.camera().pixel_count() as f64;
         let factor = if self.steps == 0 { 0.0 } else { b * pixels / self.steps as f64 };
         image.scale(factor);
@@ -215,7 +217,7 @@ impl Ensemble {
     /// Mean luminance of the image and its standard error, in the file's units.
     pub fn normalization(&self, scene: &Scene) -> (f64, f64) {
         let scale = scene.radiance_scale();
-        (self.bootstrap.normalization() * scale, self.bootstrap.normalization_error() * scale)
+        (self.pool.normalization() * scale, self.pool.normalization_error() * scale)
     }
 
     /// Counts of all chains together.

@@ -22,11 +22,11 @@ use crate::path::{Draft, Failure, Path};
 use crate::scene::Tracer;
 
 pub use archive::{Archive, Gone, Round};
-pub use bootstrap::{Bootstrap, BootstrapSettings};
+pub use bootstrap::{PoolKey, Source, draw_pool};
 pub use checkpoint::Checkpoint;
 pub use ensemble::{Ensemble, EnsembleSettings, LANES};
 pub use kernel::Kernel;
-pub use pilot::{PilotSettings, Prospect, explore};
+pub use pilot::{PilotSettings, Prospect, Sighting, Survey, survey};
 pub use pool::Pool;
 pub use statistics::{ChainStatistics, StrategyCounts};
 pub use watch::Watch;
@@ -77,6 +77,8 @@ pub struct Chain {
     standing: Standing,
     /// Weight that the current path has gathered since it was last splatted.
     pending: f64,
+    /// What a splat of weight one counts on the film.
+    gain: f64,
     steps: u64,
     /// The step that made the current path, and its acceptance probability and strategy.
     arrival: (u64, f64, StrategyId),
@@ -125,12 +127,20 @@ impl Chain {
             proposal: Box::default(),
             draft: Box::default(),
             pending: 0.0,
+            gain: 1.0,
             steps: 0,
             arrival: (0, 1.0, PathHeader::NO_STRATEGY),
             trial: None,
             statistics: ChainStatistics::new(kernel.mixture.len()),
             monitor: None,
         }
+    }
+
+    /// The chain with every splat on the film multiplied by `gain`.
+    #[must_use]
+    pub fn with_gain(mut self, gain: f64) -> Self {
+        self.gain = gain;
+        self
     }
 
     /// Opens an epoch with another kernel of the same target: the path stays, the counts begin anew.
@@ -158,7 +168,7 @@ impl Chain {
     }
 
     /// Steps since the chain came to its current path.
-    fn stay(&self) -> u64 {
+    pub fn stay(&self) -> u64 {
         self.steps - self.arrival.0
     }
 
@@ -262,7 +272,7 @@ impl Chain {
             return Step { strategy, acceptance: a, outcome };
         }
         if a > 0.0 {
-            let weight = a * standing.importance.share;
+            let weight = a * standing.importance.share * self.gain;
             film.splat(self.proposal.pixel(), self.proposal.unit_color() * weight);
         }
         self.look(a);
@@ -376,7 +386,7 @@ impl Chain {
     /// Adds the current path's gathered weight to the film.
     pub fn flush(&mut self, film: &mut Film) {
         if self.pending > 0.0 {
-            let weight = self.pending * self.standing.importance.share;
+            let weight = self.pending * self.standing.importance.share * self.gain;
             film.splat(self.current.pixel(), self.current.unit_color() * weight);
             self.pending = 0.0;
         }

@@ -25,6 +25,10 @@ pub enum Stream {
     Census = 8,
     /// The look at a scene that sets the weights of its strategies.
     Pilot = 11,
+    /// Samples through points anywhere on the film.
+    Scattered = 15,
+    /// One short chain of the look at a scene.
+    Scout = 14,
     /// One epoch of the explorer.
     Explorer = 12,
     /// One fan of the explorer.
