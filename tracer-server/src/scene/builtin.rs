@@ -4,8 +4,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::diagnostic::LoadError;
-use super::file;
+use super::reading::diagnostic::LoadError;
+use super::toml;
 
 /// A built-in scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,22 +39,22 @@ impl Builtin {
 
     /// One line for people: what there is to see.
     pub fn summary(&self) -> Result<String, LoadError> {
-        file::parse(self.text, &self.path()).map(|scene| scene.description)
+        toml::parse(self.text, &self.path()).map(|scene| scene.description)
     }
 }
 
 /// The names of all built-in scenes.
-pub fn names() -> impl Iterator<Item = &'static str> {
-    BUILTINS.iter().map(|builtin| builtin.name)
+pub(crate) fn names() -> Vec<&'static str> {
+    BUILTINS.iter().map(|builtin| builtin.name).collect()
 }
 
 /// The built-in name nearest to a misspelt one, if any is near.
-pub(super) fn closest(name: &str) -> Option<&'static str> {
+pub(crate) fn closest(name: &str) -> Option<&'static str> {
     // Arguments may be long paths; no built-in name is near those.
     if name.len() > 40 {
         return None;
     }
-    let nearest = names().map(|known| (edit_distance(name, known), known)).min()?;
+    let nearest = names().into_iter().map(|known| (edit_distance(name, known), known)).min()?;
     (nearest.0 <= 1 + nearest.1.len() / 4).then_some(nearest.1)
 }
 

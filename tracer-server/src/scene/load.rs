@@ -3,15 +3,14 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use super::SceneDescription;
 use super::builtin::{self, Builtin};
-pub use super::diagnostic::{LoadError, Place, Warning};
-use super::file::{self, DEFAULT_MAX_EDGES, Read};
-use super::origin::Origins;
-use super::strategies::StrategySetting;
-use super::text::read_utf8;
-use super::validate::{Part, Problem, validate};
-use super::{mitsuba, obj, viewpoint};
+use super::description::SceneDescription;
+use super::description::check::{Part, Problem, validate};
+pub use super::reading::diagnostic::{LoadError, Place, Warning};
+use super::reading::origin::Origins;
+use super::reading::text::read_utf8;
+use super::reading::{DEFAULT_MAX_EDGES, Read, StrategySetting, viewpoint};
+use super::{mitsuba, obj, toml};
 
 /// The most bytes of a TOML scene file that are read.
 const MAX_TOML_BYTES: u64 = 64 << 20;
@@ -35,18 +34,22 @@ pub struct Loaded {
 /// A built-in name comes first; `./NAME` always means a file.
 pub fn load(spec: &str) -> Result<Loaded, LoadError> {
     if let Some(builtin) = Builtin::find(spec) {
-        return check(file::read(builtin.text, &builtin.path(), builtin.name)?);
+        return check(toml::read(builtin.text, &builtin.path(), builtin.name)?);
     }
     let path = Path::new(spec);
     if !path.exists() {
         let closest = builtin::closest(spec);
-        return Err(LoadError::NotFound { spec: spec.to_owned(), closest });
+        return Err(LoadError::NotFound {
+            spec: spec.to_owned(),
+            closest,
+            known: builtin::names(),
+        });
     }
     let path = if path.is_dir() { only_scene(path)? } else { path.to_path_buf() };
     check(match format_of(&path)? {
         Format::Toml => {
             let text = read_utf8(&path, MAX_TOML_BYTES)?;
-            file::read(text.trim_start_matches('\u{feff}'), &path, &stem(&path))?
+            toml::read(text.trim_start_matches('\u{feff}'), &path, &stem(&path))?
         }
         Format::Obj => read_obj(&path)?,
         Format::Mitsuba => mitsuba::read(&path, &stem(&path))?,

@@ -3,10 +3,10 @@
 use common::Rgb;
 
 use super::document::Element;
-use super::palette::Palette;
+use super::texture::Textures;
 use crate::bsdf::Fresnel;
 use crate::scene::description::{BsdfDescription, ColorInput, Material, NumberInput};
-use crate::scene::diagnostic::LoadError;
+use crate::scene::reading::diagnostic::LoadError;
 
 /// The deepest that models may be nested in one another.
 const MAX_NESTING: usize = 16;
@@ -63,9 +63,9 @@ struct Model {
 /// Reads a `bsdf`; `None` for a surface that nothing sees.
 pub(super) fn read(
     element: Element<'_>,
-    palette: &mut Palette,
+    textures: &mut Textures,
 ) -> Result<Option<Material>, LoadError> {
-    let model = Reader { palette }.model(element, 0)?;
+    let model = Reader { textures }.model(element, 0)?;
     Ok(model.map(|Model { bsdf, two_sided }| Material {
         two_sided,
         ..Material::new(element.label(), bsdf)
@@ -79,8 +79,8 @@ pub(super) fn default_material(emits: bool) -> Material {
     Material { two_sided: false, ..Material::new("(default)", bsdf) }
 }
 
-struct Reader<'p> {
-    palette: &'p mut Palette,
+struct Reader<'t> {
+    textures: &'t mut Textures,
 }
 
 impl Reader<'_> {
@@ -141,7 +141,7 @@ impl Reader<'_> {
     }
 
     fn tell(&mut self, element: Element<'_>, message: &str) {
-        self.palette.warnings.push(element.warning(message));
+        self.textures.warnings.push(element.warning(message));
     }
 
     fn nested(&mut self, element: Element<'_>, depth: usize) -> Result<Option<Model>, LoadError> {
@@ -159,7 +159,7 @@ impl Reader<'_> {
             self.tell(element, &format!("its facets are those of `ggx` here, not of `{facets}`"));
         }
         if let Some(texture) = element.property("alpha")?.filter(|value| value.tag() == "texture") {
-            return Ok(match self.palette.texture(texture)? {
+            return Ok(match self.textures.input(texture)? {
                 ColorInput::Texture { texture, .. } => {
                     NumberInput::Texture { texture, factor: 1.0 }
                 }
@@ -198,7 +198,7 @@ impl Reader<'_> {
     fn color_input(&mut self, element: Element<'_>, name: &str) -> Result<ColorInput, LoadError> {
         match element.property(name)? {
             None => Ok(Rgb::grey(DEFAULT_REFLECTANCE).into()),
-            Some(value) if value.tag() == "texture" => self.palette.texture(value),
+            Some(value) if value.tag() == "texture" => self.textures.input(value),
             Some(value) => value.as_color().map(ColorInput::from),
         }
     }

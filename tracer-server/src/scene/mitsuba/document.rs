@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use roxmltree::{Document, Node, NodeId, ParsingOptions};
 
-use crate::scene::diagnostic::{LoadError, Place, Warning};
+use crate::scene::reading::diagnostic::{LoadError, Place, Warning};
 
 /// The most nodes of a document that are read.
 const MAX_NODES: u32 = 4_000_000;

@@ -5,8 +5,8 @@ use glam::{DMat3, DVec3};
 
 use super::document::Element;
 use crate::scene::description::{Glow, LightDescription};
-use crate::scene::diagnostic::{LoadError, Warning};
-use crate::scene::texture::read_sky;
+use crate::scene::reading::diagnostic::{LoadError, Warning};
+use crate::scene::reading::image::read_sky;
 
 /// Half angle in degrees of a spot that does not tell its own.
 const DEFAULT_CUTOFF: f64 = 20.0;

@@ -12,6 +12,7 @@ mod palette;
 mod ply;
 mod sensor;
 mod shape;
+mod texture;
 mod transform;
 mod value;
 
@@ -20,12 +21,11 @@ use std::path::Path;
 use common::{CameraPose, Rgb};
 use glam::DVec3;
 
-use super::description::{SceneDescription, Sphere};
-use super::diagnostic::{LoadError, Warning};
-use super::file::{DEFAULT_MAX_EDGES, Read};
-use super::origin::Origins;
-use super::text::read_utf8;
-use super::{MAX_EDGES, viewpoint};
+use crate::scene::description::{MAX_EDGES, SceneDescription, Sphere};
+use crate::scene::reading::diagnostic::{LoadError, Warning};
+use crate::scene::reading::origin::Origins;
+use crate::scene::reading::text::read_utf8;
+use crate::scene::reading::{DEFAULT_MAX_EDGES, Read, viewpoint};
 use document::{Element, Source};
 use palette::Palette;
 use shape::{Geometry, Shape};
@@ -204,9 +204,9 @@ impl Loader {
     fn finish(self) -> Read {
         let Self { mut description, mut origins, palette, mut warnings } = self;
         description.materials = palette.materials;
-        description.textures = palette.textures;
+        description.textures = palette.textures.list;
         origins.materials = palette.places;
-        warnings.extend(palette.warnings);
+        warnings.extend(palette.textures.warnings);
         Read { description, origins, warnings, strategies: Vec::new() }
     }
 }

@@ -9,9 +9,9 @@ use ply_rs_bw::ply::{ElementDef, Header, Property, PropertyAccess, PropertyAcces
 
 use super::document::shorten;
 use crate::scene::description::Mesh;
-use crate::scene::diagnostic::{LoadError, Place};
-use crate::scene::text::read_bytes;
-use crate::scene::validate::MAX_TRIANGLES;
+use crate::scene::description::check::MAX_TRIANGLES;
+use crate::scene::reading::diagnostic::{LoadError, Place};
+use crate::scene::reading::text::read_bytes;
 
 /// The most bytes of a PLY file that are read.
 const MAX_PLY_BYTES: u64 = 2 << 30;

@@ -5,8 +5,8 @@ use glam::{DMat3, DVec3};
 
 use super::document::Element;
 use crate::scene::description::ThinLens;
-use crate::scene::diagnostic::{LoadError, Warning};
-use crate::scene::viewpoint::Viewpoint;
+use crate::scene::reading::diagnostic::{LoadError, Warning};
+use crate::scene::reading::viewpoint::Viewpoint;
 
 /// Sides of a film that does not tell its own, in pixels.
 const DEFAULT_FILM: [u32; 2] = [768, 576];

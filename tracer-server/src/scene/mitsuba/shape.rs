@@ -9,8 +9,9 @@ use super::document::Element;
 use super::transform::uniform_scale;
 use super::{mesh, ply};
 use crate::scene::description::Mesh;
-use crate::scene::diagnostic::{LoadError, Warning};
-use crate::scene::{obj, shape};
+use crate::scene::obj;
+use crate::scene::reading::diagnostic::{LoadError, Warning};
+use crate::scene::reading::shape;
 
 /// Number of sides that stand for a circle.
 const SIDES: u32 = 256;

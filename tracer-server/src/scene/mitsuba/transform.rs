@@ -4,7 +4,7 @@ use glam::{DMat3, DMat4, DVec3, DVec4};
 
 use super::document::Element;
 use super::value::numbers;
-use crate::scene::diagnostic::LoadError;
+use crate::scene::reading::diagnostic::LoadError;
 
 impl Element<'_> {
     /// A `transform` parameter; the identity where it is absent.

@@ -5,8 +5,8 @@ use glam::DVec3;
 
 use super::document::{Element, shorten};
 use crate::scene::description::Coding;
-use crate::scene::diagnostic::LoadError;
-use crate::scene::text;
+use crate::scene::reading::diagnostic::LoadError;
+use crate::scene::reading::text;
 
 /// The most numbers of one value; a matrix has sixteen.
 const MAX_NUMBERS: usize = 16;

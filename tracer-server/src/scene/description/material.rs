@@ -1,0 +1,217 @@
+//! Materials and textures as their author wrote them.
+
+use std::sync::Arc;
+
+use common::Rgb;
+
+use crate::bsdf::Fresnel;
+
+/// How a surface scatters and emits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// The name in the scene file.
+    pub name: String,
+    /// How it scatters.
+    pub bsdf: BsdfDescription,
+    /// True when an opaque model scatters on both sides alike, false when its back is black. What
+    /// light passes through has two sides of its own and is the same either way.
+    pub two_sided: bool,
+    /// Radiance emitted from the front side (the side the normal points to); black for none.
+    pub emission: Rgb,
+}
+
+impl Material {
+    /// A two-sided material that emits nothing.
+    pub fn new(name: impl Into<String>, bsdf: BsdfDescription) -> Self {
+        Self { name: name.into(), bsdf, two_sided: true, emission: Rgb::BLACK }
+    }
+}
+
+/// The parameters of a scattering model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BsdfDescription {
+    /// Ideal diffuse reflection.
+    Lambert {
+        /// Albedo, each channel in [0, 1].
+        reflectance: ColorInput,
+    },
+    /// Ideal mirror.
+    Mirror {
+        /// Reflectance at every angle, each channel in [0, 1].
+        reflectance: Rgb,
+    },
+    /// A smooth boundary between two transparent media.
+    Dielectric {
+        /// Index of refraction behind the surface over the one in front of it.
+        eta: f64,
+        /// Tint of reflected light, each channel in [0, 1].
+        reflectance: Rgb,
+        /// Tint of refracted light, each channel in [0, 1].
+        transmittance: Rgb,
+    },
+    /// A rough boundary between two transparent media.
+    RoughDielectric {
+        /// Index of refraction behind the surface over the one in front of it.
+        eta: f64,
+        /// Tint of reflected light, each channel in [0, 1].
+        reflectance: Rgb,
+        /// Tint of refracted light, each channel in [0, 1].
+        transmittance: Rgb,
+        /// Roughness of the facets: alpha of GGX, in [0, 1].
+        roughness: NumberInput,
+    },
+    /// A metal.
+    Conductor {
+        /// What it, or a facet of it, reflects.
+        fresnel: Fresnel,
+        /// Roughness of the facets: alpha of GGX, in [0, 1]; 0 is a mirror.
+        roughness: NumberInput,
+    },
+    /// Diffuse paint under a transparent coat.
+    Plastic {
+        /// Albedo of the base, each channel in [0, 1].
+        diffuse: ColorInput,
+        /// What the coat, or a facet of it, reflects.
+        fresnel: Fresnel,
+        /// Roughness of the coat: alpha of GGX, in [0, 1]; 0 is smooth.
+        roughness: f64,
+        /// True when light that goes to and fro between a dielectric coat and the base takes on
+        /// its colour each time, false when `diffuse` is the colour as seen through the coat.
+        nonlinear: bool,
+    },
+}
+
+impl BsdfDescription {
+    /// The same model reading textures that are `by` places further on in the list.
+    #[must_use]
+    pub fn with_textures_after(mut self, by: u16) -> Self {
+        match &mut self {
+            Self::Lambert { reflectance: ColorInput::Texture { texture, .. } }
+            | Self::Plastic { diffuse: ColorInput::Texture { texture, .. }, .. }
+            | Self::Conductor { roughness: NumberInput::Texture { texture, .. }, .. }
+            | Self::RoughDielectric { roughness: NumberInput::Texture { texture, .. }, .. } => {
+                *texture = texture.saturating_add(by);
+            }
+            _ => {}
+        }
+        self
+    }
+}
+
+/// A number that is the same everywhere, or read from a texture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NumberInput {
+    /// The same everywhere.
+    Constant(f64),
+    /// The texture's luminance times a factor.
+    Texture {
+        /// Index into the scene's textures.
+        texture: u16,
+        /// What it is multiplied by.
+        factor: f64,
+    },
+}
+
+impl From<f64> for NumberInput {
+    fn from(number: f64) -> Self {
+        Self::Constant(number)
+    }
+}
+
+/// A colour that is the same everywhere, or read from a texture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ColorInput {
+    /// The same everywhere.
+    Constant(Rgb),
+    /// The texture's colour times a factor.
+    Texture {
+        /// Index into the scene's textures.
+        texture: u16,
+        /// What each channel is multiplied by, in [0, 1].
+        factor: Rgb,
+    },
+}
+
+impl From<Rgb> for ColorInput {
+    fn from(color: Rgb) -> Self {
+        Self::Constant(color)
+    }
+}
+
+/// An image that is laid over surfaces and repeats.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Texture {
+    /// The file's name, for people.
+    pub name: String,
+    /// Width in texels.
+    pub width: u32,
+    /// Height in texels.
+    pub height: u32,
+    /// Codes of red, green and blue, row by row from the top.
+    pub texels: Arc<[[u8; 3]]>,
+    /// What the codes mean.
+    pub coding: Coding,
+}
+
+/// How the 8-bit codes of a texture stand for numbers in [0, 1].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Coding {
+    /// Colours by the sRGB curve (IEC 61966-2-1).
+    Srgb,
+    /// Proportional: numbers such as roughness.
+    Linear,
+}
+
+impl Coding {
+    /// The sRGB code that comes nearest to a number in [0, 1].
+    pub(crate) fn encode_srgb(value: f64) -> u8 {
+        let value = value.clamp(0.0, 1.0);
+        let share = if value <= 0.003_130_8 {
+            12.92 * value
+        } else {
+            1.055 * value.powf(1.0 / 2.4) - 0.055
+        };
+        (255.0 * share).round() as u8
+    }
+
+    /// The number in [0, 1] that a code stands for.
+    pub fn decode(self, code: u8) -> f64 {
+        self.decode_share(f64::from(code) / 255.0)
+    }
+
+    /// The number that a share of the largest code stands for.
+    pub fn decode_share(self, value: f64) -> f64 {
+        match self {
+            Self::Linear => value,
+            Self::Srgb if value <= 0.04045 => value / 12.92,
+            Self::Srgb => ((value + 0.055) / 1.055).powf(2.4),
+        }
+    }
+}
+
+impl Texture {
+    /// The mean of all texels, decoded; black for a texture without any.
+    pub fn mean(&self) -> Rgb {
+        // Counting codes first makes the sum exact and independent of the order of texels.
+        let mut counts = [[0_u64; 256]; 3];
+        for texel in self.texels.iter() {
+            for (channel, &code) in counts.iter_mut().zip(texel) {
+                channel[usize::from(code)] += 1;
+            }
+        }
+        let mean = |channel: &[u64; 256]| {
+            let decoded = (0_u8..=255).map(|code| self.coding.decode(code));
+            let sum: f64 = decoded.zip(channel).map(|(value, &n)| n as f64 * value).sum();
+            sum / self.texels.len().max(1) as f64
+        };
+        let [r, g, b] = &counts;
+        Rgb::new(mean(r), mean(g), mean(b))
+    }
+}
+
+impl std::fmt::Debug for Texture {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { name, width, height, coding, .. } = self;
+        write!(f, "Texture({name}, {width} x {height}, {coding:?})")
+    }
+}

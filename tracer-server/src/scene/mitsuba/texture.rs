@@ -1,0 +1,77 @@
+//! The textures of a scene, each read once however often it is used.
+
+use std::collections::BTreeMap;
+
+use common::Rgb;
+use glam::DMat4;
+
+use super::document::Element;
+use crate::scene::description::{Coding, ColorInput, Texture};
+use crate::scene::reading::diagnostic::{LoadError, Warning};
+use crate::scene::reading::image::read_texture;
+
+/// What stands for a texture that cannot be read.
+const UNKNOWN_GREY: f64 = 0.5;
+
+/// Textures read so far.
+#[derive(Debug, Default)]
+pub(super) struct Textures {
+    /// The textures.
+    pub(super) list: Vec<Texture>,
+    /// What is not modelled of them, and of the models that read them.
+    pub(super) warnings: Vec<Warning>,
+    /// Textures by the element that defines them.
+    inputs: BTreeMap<u32, ColorInput>,
+}
+
+impl Textures {
+    /// What a `texture` amounts to.
+    pub(super) fn input(&mut self, element: Element<'_>) -> Result<ColorInput, LoadError> {
+        if let Some(&input) = self.inputs.get(&element.index()) {
+            return Ok(input);
+        }
+        let input = match element.plugin()?.as_str() {
+            "bitmap" => self.bitmap(element)?,
+            "checkerboard" => self.checkerboard(element)?,
+            _ => {
+                let message = "no such texture here; those known: bitmap, checkerboard. Grey \
+                               stands for it";
+                self.warnings.push(element.warning(message));
+                Rgb::grey(UNKNOWN_GREY).into()
+            }
+        };
+        self.inputs.insert(element.index(), input);
+        Ok(input)
+    }
+
+    fn bitmap(&mut self, element: Element<'_>) -> Result<ColorInput, LoadError> {
+        let name = element.string("filename")?.ok_or_else(|| {
+            element.error("the parameter `filename` is missing: the file with the image")
+        })?;
+        let raw = element.flag("raw")?;
+        if element.transform("to_uv")? != DMat4::IDENTITY {
+            self.warnings.push(element.warning("the transform to_uv is ignored"));
+        }
+        let coding = if raw { Coding::Linear } else { Coding::Srgb };
+        let texture = match read_texture(&element.file(&name), coding) {
+            Ok(texture) => texture,
+            Err(message) => {
+                let message = format!("{message}; grey stands for it");
+                self.warnings.push(element.warning(message));
+                return Ok(Rgb::grey(UNKNOWN_GREY).into());
+            }
+        };
+        let index = u16::try_from(self.list.len())
+            .map_err(|_error| element.error("more than 65,536 textures"))?;
+        self.list.push(texture);
+        Ok(ColorInput::Texture { texture: index, factor: Rgb::WHITE })
+    }
+
+    /// A checkerboard is its mean colour.
+    fn checkerboard(&mut self, element: Element<'_>) -> Result<ColorInput, LoadError> {
+        let a = element.color("color0")?.unwrap_or(Rgb::grey(0.4));
+        let b = element.color("color1")?.unwrap_or(Rgb::grey(0.2));
+        self.warnings.push(element.warning("the checkerboard becomes its mean colour"));
+        Ok(((a + b) * 0.5).into())
+    }
+}

@@ -1,0 +1,166 @@
+//! Textures as the tracer reads them.
+
+use std::sync::Arc;
+
+use common::{Rgb, TexturePreview};
+use glam::DVec2;
+
+use crate::bsdf::{Bsdf, Ggx, deepened};
+use crate::scene::description::{Coding, ColorInput, NumberInput, Texture};
+
+/// A texture with its codes decoded on the way.
+#[derive(Debug)]
+pub(super) struct Map {
+    width: usize,
+    height: usize,
+    texels: Arc<[[u8; 3]]>,
+    /// The number that each code stands for.
+    decoded: Box<[f64; 256]>,
+}
+
+impl Map {
+    pub(super) fn new(texture: &Texture) -> Self {
+        let Texture { width, height, coding, .. } = *texture;
+        let mut decoded = Box::new([0.0; 256]);
+        for (code, value) in (0_u8..=255).zip(decoded.iter_mut()) {
+            *value = Coding::decode(coding, code);
+        }
+        let texels = Arc::clone(&texture.texels);
+        Self { width: width as usize, height: height as usize, texels, decoded }
+    }
+
+    /// The colour at a point by bilinear interpolation between the four texels around it; the image
+    /// repeats in both directions.
+    pub(super) fn at(&self, uv: DVec2) -> Rgb {
+        let (x, x_next, across) = neighbours(uv.x, self.width);
+        let (y, y_next, down) = neighbours(1.0 - uv.y, self.height);
+        let row = |y: usize| {
+            let (left, right) = (self.texel(x, y), self.texel(x_next, y));
+            left * (1.0 - across) + right * across
+        };
+        row(y) * (1.0 - down) + row(y_next) * down
+    }
+
+    /// The map times `factor` as small as viewers want it: each texel is the mean of a block.
+    pub(super) fn preview(&self, factor: Rgb) -> TexturePreview {
+        let side = self.width.max(self.height).div_ceil(TexturePreview::MAX_SIDE as usize).max(1);
+        let (width, height) = (self.width.div_ceil(side), self.height.div_ceil(side));
+        let block = |first: usize, count: usize| first * side..((first + 1) * side).min(count);
+        let mean = |(x, y): (usize, usize)| {
+            let (columns, rows) = (block(x, self.width), block(y, self.height));
+            let count = columns.len() * rows.len();
+            let places = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
+            let sum = places.fold(Rgb::BLACK, |sum, (x, y)| sum + self.texel(x, y));
+            let mean = sum * (1.0 / count as f64) * factor;
+            [mean.r, mean.g, mean.b].map(Coding::encode_srgb)
+        };
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        TexturePreview {
+            width: width as u32,
+            height: height as u32,
+            texels: places.map(mean).collect(),
+        }
+    }
+
+    fn texel(&self, x: usize, y: usize) -> Rgb {
+        let [r, g, b] = self.texels[y * self.width + x].map(|c| self.decoded[usize::from(c)]);
+        Rgb::new(r, g, b)
+    }
+}
+
+/// The two texels around a coordinate, and the share of the second.
+fn neighbours(coordinate: f64, count: usize) -> (usize, usize, f64) {
+    // Texels have their values in their middles.
+    let position = coordinate.rem_euclid(1.0) * count as f64 - 0.5;
+    let below = position.floor();
+    let first = (below + count as f64) as usize % count;
+    (first, (first + 1) % count, position - below)
+}
+
+/// Which textures a material reads.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Paint {
+    pub(super) color: Option<ColorInput>,
+    pub(super) roughness: Option<NumberInput>,
+    /// Index of a coat below which the colour grows deeper.
+    pub(super) coat: Option<f64>,
+}
+
+impl Paint {
+    /// The model at a point.
+    pub(super) fn apply(&self, bsdf: &Bsdf, maps: &[Map], uv: DVec2) -> Bsdf {
+        let map = |texture: u16| maps.get(usize::from(texture)).map(|map| map.at(uv));
+        let color = match self.color {
+            Some(ColorInput::Texture { texture, factor }) => map(texture).map(|c| c * factor),
+            _ => None,
+        };
+        let color = color.map(|color| self.coat.map_or(color, |eta| deepened(color, eta)));
+        let alpha = match self.roughness {
+            Some(NumberInput::Texture { texture, factor }) => {
+                map(texture).map(|c| c.luminance() * factor)
+            }
+            _ => None,
+        };
+        bsdf.painted(color, alpha.map(Ggx::new))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn checks() -> Map {
+        Map::new(&Texture {
+            name: "checks".to_owned(),
+            width: 2,
+            height: 2,
+            texels: vec![[255, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 255]].into(),
+            coding: Coding::Linear,
+        })
+    }
+
+    #[test]
+    fn texels_lie_row_by_row_from_the_top() {
+        let map = checks();
+        let at = |u, v| map.at(DVec2::new(u, v));
+        assert_eq!(at(0.25, 0.75), Rgb::new(1.0, 0.0, 0.0), "the first one is at the top left");
+        assert_eq!(at(0.75, 0.25), Rgb::new(0.0, 0.0, 1.0), "the last one at the bottom right");
+        assert_eq!(at(0.5, 0.5), Rgb::new(0.25, 0.0, 0.25), "the middle is the mean of all");
+    }
+
+    #[test]
+    fn a_preview_is_small_and_as_bright() {
+        let texels: Vec<_> =
+            (0..1030 * 3).map(|i| if i % 2 == 0 { [255; 3] } else { [0; 3] }).collect();
+        let map = Map::new(&Texture {
+            name: "stripes".to_owned(),
+            width: 1030,
+            height: 3,
+            texels: texels.into(),
+            coding: Coding::Linear,
+        });
+        let preview = map.preview(Rgb::new(1.0, 0.5, 0.0));
+        assert_eq!((preview.width, preview.height, preview.texels.len()), (344, 1, 344), "small");
+        // Every other column is white: two of the first three, and one of the next.
+        let code = |share: f64| [share, 0.5 * share, 0.0].map(Coding::encode_srgb);
+        assert_eq!(preview.texels[..2], [code(2.0 / 3.0), code(1.0 / 3.0)], "the first blocks");
+        let whole = checks().preview(Rgb::WHITE);
+        assert_eq!(whole.texels, [[255, 0, 0], [0; 3], [0; 3], [0, 0, 255]], "kept as it is");
+    }
+
+    #[test]
+    fn the_image_repeats_without_a_seam() {
+        let map = checks();
+        for (u, v) in [(0.1, 0.9), (0.0, 0.0), (0.999, 0.3)] {
+            let here = map.at(DVec2::new(u, v));
+            for (du, dv) in [(1.0, 0.0), (-3.0, 2.0), (0.0, -1.0)] {
+                let there = map.at(DVec2::new(u + du, v + dv));
+                assert!((here.r - there.r).abs() + (here.b - there.b).abs() < 1e-12, "{u} {v}");
+            }
+        }
+        let (left, right) = (map.at(DVec2::new(1e-9, 0.75)), map.at(DVec2::new(1.0 - 1e-9, 0.75)));
+        assert!((left.r - right.r).abs() < 1e-6, "{left:?} {right:?}");
+        // A coordinate just below zero is rounded up to one.
+        assert!(map.at(DVec2::splat(-1e-30)).is_physical(), "no texel beyond the last");
+    }
+}
