@@ -88,7 +88,6 @@ fn count(scene: &Scene, strategies: &StrategyOptions) -> (usize, u64) {
         threads: 1,
         strategies: *strategies,
         bootstrap_samples: 1 << 13,
-        precision: 0.003,
     };
     let ensemble = Ensemble::new(scene, &settings, |_| ());
     let mut chains: Vec<Chain> = ensemble

@@ -14,7 +14,7 @@ use crate::target::{Base, Selective};
 /// Side of the film in pixels.
 const SIDE: u32 = 6;
 /// Independent pictures by each way.
-const RUNS: u64 = 48;
+const RUNS: u64 = 32;
 /// Passes of a picture.
 const PASSES: u32 = 8;
 
@@ -37,11 +37,11 @@ fn by_paths(scene: &Scene, selective: Selective, seed: u64) -> Film {
     let mut film = Film::new(SIDE, SIDE);
     let mut sampler = BidirectionalSampler::new(&scene);
     let mut rng = Rng::new(seed, Stream::Laboratory, 5);
-    let samples = 40 * SIDE * SIDE;
+    let samples = 20 * SIDE * SIDE;
     for _ in 0..samples {
         let aim = Aim::from_numbers(&scene, &mut rng);
         sampler.sample(&scene, aim, &mut rng, |path, weight| {
-            let share = selective.base_share(selective.base.density_sum(path));
+            let share = selective.base_share(selective.base.density_sum(path), path.edge_count());
             film.splat(path.pixel(), path.unit_color() * (share * weight));
         });
     }
@@ -111,12 +111,10 @@ fn a_share_by_the_weight_of_a_sample_is_found() {
         for _ in 0..samples {
             let aim = Aim::from_numbers(&scene, &mut rng);
             let pixel = scene.camera().pixel(aim.film);
-            path::terms(&scene, &aim, &mut rng, |contribution, survival| {
-                let counted = contribution * (1.0 / survival);
-                let share = selective.base_share(1.0 / counted.luminance());
-                if share > 0.0 {
-                    film.splat(pixel, counted * share);
-                }
+            path::terms(&scene, &aim, &mut rng, |term| {
+                let counted = term.contribution * (1.0 / term.survival);
+                let share = selective.base_share(1.0 / counted.luminance(), term.edges);
+                film.splat(pixel, counted * share);
             });
         }
         film.scale(f64::from(SIDE * SIDE) / f64::from(samples));

@@ -49,6 +49,19 @@ impl Spread {
     pub(crate) fn new(pass: Pass, pixel: u64) -> Self {
         Self { strata: pass.strata.of(pixel), index: pass.index }
     }
+
+    /// A ray through a pixel.
+    #[inline]
+    fn aim(&mut self, scene: &Tracer<'_>, pixel: usize) -> Aim {
+        let camera = scene.camera();
+        let [u, v, a, b] = self.row(Strand::Eye, 0);
+        let (x, y) = (pixel as u32 % camera.width, pixel as u32 / camera.width);
+        let point = DVec2::new(
+            (f64::from(x) + u) / f64::from(camera.width),
+            (f64::from(y) + v) / f64::from(camera.height),
+        );
+        Aim::through(scene, point, || [a, b])
+    }
 }
 
 impl Numbers for Spread {
@@ -68,7 +81,7 @@ pub fn work_of_paths(scene: &Scene) -> f64 {
     let mut rng = Rng::new(0, Stream::Scout, u64::MAX);
     for _ in 0..SAMPLES {
         let aim = Aim::from_numbers(&tracer, &mut rng);
-        path::terms(&tracer, &aim, &mut rng, |_, _| ());
+        path::terms(&tracer, &aim, &mut rng, |_| ());
     }
     let counts = RayCounts::of(&tracer);
     (2.4 * counts.rays as f64 + counts.shadow_rays as f64) / SAMPLES as f64
@@ -94,17 +107,35 @@ impl BaseSampler {
         rows: std::ops::Range<u32>,
         film: &mut Film,
     ) {
-        let camera = scene.camera();
-        let (width, height) = (f64::from(camera.width), f64::from(camera.height));
+        let width = scene.camera().width as usize;
         for y in rows {
-            for x in 0..camera.width {
-                let pixel = y as usize * camera.width as usize + x as usize;
+            for pixel in y as usize * width..(y as usize + 1) * width {
                 let mut numbers = Spread::new(pass, pixel as u64);
-                let [u, v, a, b] = numbers.row(Strand::Eye, 0);
-                let point = DVec2::new((f64::from(x) + u) / width, (f64::from(y) + v) / height);
-                let aim = Aim::through(scene, point, || [a, b]);
+                let aim = numbers.aim(scene, pixel);
                 self.sample(scene, &aim, pixel, &mut numbers, film);
             }
+        }
+    }
+
+    /// Calls `visit` with everything that the sample through a pixel in a pass carries, whatever part of
+    /// it is the sampler's: the pixel that it counts in, its luminance, `S_B` and its edges.
+    pub fn look(
+        &mut self,
+        scene: &Tracer<'_>,
+        pass: Pass,
+        pixel: usize,
+        mut visit: impl FnMut(usize, f64, f64, usize),
+    ) {
+        let mut numbers = Spread::new(pass, pixel as u64);
+        let aim = numbers.aim(scene, pixel);
+        match &mut self.walks {
+            None => path::terms(scene, &aim, &mut numbers, |term| {
+                let luminance = term.contribution.luminance() / term.survival;
+                visit(pixel, luminance, term.density_sum(), term.edges);
+            }),
+            Some(walks) => walks.look(scene, aim, &mut numbers, |path, weight| {
+                visit(path.pixel(), weight, path.density_sum(), path.edge_count());
+            }),
         }
     }
 

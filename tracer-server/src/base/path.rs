@@ -24,24 +24,44 @@ pub(super) fn sample(
     numbers: &mut impl Numbers,
 ) -> Rgb {
     let mut sum = Rgb::BLACK;
-    terms(scene, aim, numbers, |contribution, survival| {
-        let luminance = contribution.luminance();
-        if luminance > 0.0 {
-            let share = selective.base_share(1.0 / luminance);
-            sum += contribution * (share / survival);
-        }
+    terms(scene, aim, numbers, |term| {
+        sum += term.contribution
+            * (selective.base_share(term.density_sum(), term.edges) / term.survival);
     });
     sum
 }
 
-/// Calls `visit` with every contribution of a walk, weighted by the balance heuristic but not for
-/// roulette, and the odds that roulette let the walk come so far.
-pub(super) fn terms(
+/// What a walk contributes by one path.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Term {
+    /// Weighted by the balance heuristic, but not for roulette; not black.
+    pub(crate) contribution: Rgb,
+    /// The odds that roulette let the walk come so far.
+    pub(crate) survival: f64,
+    /// Edges of the path.
+    pub(crate) edges: usize,
+}
+
+impl Term {
+    /// `S_B` of the path.
+    #[inline]
+    pub(crate) fn density_sum(&self) -> f64 {
+        1.0 / self.contribution.luminance()
+    }
+}
+
+/// Calls `visit` with every contribution of a walk.
+pub(crate) fn terms(
     scene: &Tracer<'_>,
     aim: &Aim,
     numbers: &mut impl Numbers,
-    mut visit: impl FnMut(Rgb, f64),
+    mut visit: impl FnMut(Term),
 ) {
+    let mut tell = |contribution: Rgb, survival, edges| {
+        if contribution.luminance() > 0.0 {
+            visit(Term { contribution, survival, edges });
+        }
+    };
     let mut direction = aim.direction(scene);
     let mut at = aim.lens;
     let (mut throughput, mut survival) = (Rgb::WHITE, 1.0);
@@ -51,7 +71,7 @@ pub(super) fn terms(
     for edges in 1..=scene.max_edges() {
         let Ok(mut next) = extend(scene, &at, direction) else { return };
         if let Some(emitted) = hit(scene, &at, &next, direction, density) {
-            visit(throughput * emitted, survival);
+            tell(throughput * emitted, survival, edges);
         }
         if edges == scene.max_edges() || next.is_lamp() {
             return;
@@ -61,7 +81,7 @@ pub(super) fn terms(
         if local.bsdf().connectable().is_some() {
             let lamp = light_vertex(scene, numbers.row(Strand::Connection, edges));
             if let Some(joined) = join(scene, &next, back, &lamp) {
-                visit(throughput * joined, survival);
+                tell(throughput * joined, survival, edges + 1);
             }
         }
         let [u @ .., roulette] = numbers.row::<ROW>(Strand::Eye, edges);

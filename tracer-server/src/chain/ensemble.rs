@@ -98,8 +98,7 @@ impl Ensemble {
             .collect();
         let kernel = Arc::new(Kernel::whole(mixture));
         let tracer = Tracer::new(scene);
-        let seeds =
-            Source::new(&tracer, key, &Target::Whole).seeds(&pool, settings.chains);
+        let seeds = Source::new(&tracer, key, &Target::Whole).seeds(&pool, settings.chains);
         for (id, seed) in (0_u32..).zip(seeds) {
             let chain = Chain::new(ChainId(id), settings.seed, seed, &kernel);
             lanes[id as usize % LANES].chains.push(chain);

@@ -67,6 +67,8 @@ pub struct Sighting {
     pub sample: u32,
     /// Film point, from 0 to 1.
     pub film: [f32; 2],
+    /// Edges of the path.
+    pub edges: usize,
     /// What it stands for: `1 / S` over the odds of roulette.
     pub weight: f64,
     /// `S_B` of every base sampler.
@@ -259,6 +261,7 @@ impl<'s> Scout<'s> {
                 found.sightings.push(Sighting {
                     sample: (number * CHUNK + sample) as u32,
                     film: path.film().as_vec2().to_array(),
+                    edges: path.edge_count(),
                     weight,
                     density_sums: Base::ALL.map(|base| base.density_sum(path)),
                 });

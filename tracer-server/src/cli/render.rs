@@ -18,9 +18,15 @@ use super::meter::Meter;
 use crate::film::Film;
 use crate::image_file;
 use crate::integrator::pssmlt::{PrimarySampler, PrimarySettings};
-use crate::render::{Budget, Integrator, Progress, RenderSettings, Rendering, Report, render};
+use crate::render::{
+    Budget, Integrator, Progress, RenderSettings, Rendering, Report, Wish, auto, render,
+};
+use crate::replicate::{Dial, Part, Selection};
 use crate::scene::{MAX_EDGES, Scene};
+use crate::target::Base;
 
+/// Kurtosis over replicates above which their spread tells little.
+const HEAVY: f64 = 12.0;
 /// Mutations, or samples, for each pixel unless the user says otherwise.
 const DEFAULT_PER_PIXEL: u64 = 256;
 
@@ -31,6 +37,9 @@ const DEFAULT_PER_PIXEL: u64 = 256;
 #[command(after_help = "\
 Examples:
   tracer-server render door -o door.png
+  tracer-server render door -o door.exr --until 1% --film-out door.lvf
+  tracer-server render door -o door.exr --time 60 --film-out door.lvf --resume
+  tracer-server render door -o a.exr --replicates 0..8 --film-out a.lvf
   tracer-server render cornell -o cornell.exr --integrator bdpt --mutations-per-pixel 64
   tracer-server render caustic -o caustic.exr --time 30 --reference reference.exr
   tracer-server render caustic -o plain.exr --without caustic,multi-chain --tune lens.radius=0.5..8
@@ -43,13 +52,13 @@ pub struct RenderArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// How to render.
-    #[arg(long, value_enum, default_value = "mlt")]
+    #[arg(long, value_enum, default_value = "auto")]
     pub integrator: IntegratorName,
     /// Mutations, or samples, for each pixel [default: 256].
     #[arg(long, value_name = "N", conflicts_with = "time")]
     #[arg(value_parser = RangedU64ValueParser::<u64>::new().range(1..=1 << 32))]
     pub mutations_per_pixel: Option<u64>,
-    /// Stop after the first round that ends later than this, seeding included.
+    /// Render for so many seconds, seeding included.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time: Option<Duration>,
     /// The chains.
@@ -58,6 +67,9 @@ pub struct RenderArgs {
     /// What `--integrator pssmlt` needs besides.
     #[command(flatten)]
     pub primary: PrimaryArgs,
+    /// Which replicates `--integrator auto` makes.
+    #[command(flatten)]
+    pub replicates: ReplicateArgs,
     /// The film.
     #[command(flatten)]
     pub film: FilmSize,
@@ -83,6 +95,106 @@ pub struct PrimaryArgs {
     /// Share of the steps of `--integrator pssmlt` that draw all numbers anew [default: 0.3].
     #[arg(long, value_name = "SHARE", value_parser = share)]
     pub large_step: Option<f64>,
+}
+
+/// Which replicates `--integrator auto` makes, what becomes of them, and how it divides the work.
+#[derive(Args, Clone, Debug, Default)]
+pub struct ReplicateArgs {
+    /// Make these replicates only, such as `0..8`, `8..` (to the last that `--mutations-per-pixel`
+    /// asks for), or what an earlier render has printed.
+    #[arg(long, value_name = "A..B", conflicts_with = "until", help_heading = REPLICATES)]
+    pub replicates: Option<Selection>,
+    /// Render until the noise is down to this, as `1%` or `0.01`: the root of the relative mean squared
+    /// error that the spread of replicates tells.
+    #[arg(long, value_name = "NOISE", value_parser = noise, help_heading = REPLICATES)]
+    pub until: Option<f64>,
+    /// Keep the sums over replicates in this file, every few seconds and at the end; `merge` adds such
+    /// files up.
+    #[arg(long, value_name = "FILE.lvf", help_heading = REPLICATES)]
+    pub film_out: Option<PathBuf>,
+    /// Go on from the file of `--film-out`, where it is there.
+    #[arg(long, requires = "film_out", help_heading = REPLICATES)]
+    pub resume: bool,
+    /// How it divides the work.
+    #[command(flatten)]
+    pub dial: DialArgs,
+}
+
+/// How `--integrator auto` divides the work between base samples and chains.
+#[derive(Args, Clone, Debug, Default)]
+pub struct DialArgs {
+    /// Who draws the base samples; the pilot's choice without.
+    #[arg(long, value_enum, value_name = "SAMPLER", help_heading = REPLICATES)]
+    pub base: Option<BaseName>,
+    /// Leave light to the chains that base samples would show brighter than this many times the mean
+    /// luminance of the picture, from 0 (all light for the chains) to `inf` (only what base samples
+    /// cannot find); the pilot's choice without.
+    #[arg(long, value_name = "TAU", value_parser = tau, help_heading = REPLICATES)]
+    pub tau: Option<f64>,
+}
+
+const REPLICATES: &str = "Replicates of --integrator auto";
+
+/// The base samplers by the names they have on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum BaseName {
+    /// Path tracing with light sampling.
+    Path,
+    /// All splits of two walks.
+    Bidirectional,
+}
+
+impl DialArgs {
+    /// What the user says of the division of the work; refused where `integrator` divides nothing.
+    pub(super) fn settings(&self, integrator: IntegratorName) -> anyhow::Result<Dial> {
+        ensure!(
+            (self.base.is_none() && self.tau.is_none()) || integrator == IntegratorName::Auto,
+            "--base and --tau are for --integrator auto"
+        );
+        let base = self.base.map(|name| match name {
+            BaseName::Path => Base::Path,
+            BaseName::Bidirectional => Base::Bidirectional,
+        });
+        Ok(Dial { base, tau: self.tau })
+    }
+}
+
+impl ReplicateArgs {
+    /// The division of the work; all of this is refused where `integrator` has no replicates.
+    fn dial(&self, integrator: IntegratorName) -> anyhow::Result<Dial> {
+        let silent = self.replicates.is_none() && self.until.is_none() && self.film_out.is_none();
+        ensure!(
+            silent || integrator == IntegratorName::Auto,
+            "--replicates, --until and --film-out are for --integrator auto"
+        );
+        self.dial.settings(integrator)
+    }
+
+    /// What was kept of an earlier render.
+    fn begun(&self) -> anyhow::Result<Option<Part>> {
+        let Some(file) = self.film_out.as_ref().filter(|file| file.exists()) else {
+            return Ok(None);
+        };
+        ensure!(
+            self.resume,
+            "`{}` is there already: give --resume to go on from it, or another name",
+            file.display()
+        );
+        super::merge::read(file).map(Some)
+    }
+}
+
+/// A noise as a number, or in per cent.
+fn noise(text: &str) -> Result<f64, String> {
+    let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
+    let noise = number.trim().parse::<f64>().ok().map(|number| number * unit);
+    let noise = noise.filter(|noise| *noise > 0.0 && *noise < 10.0);
+    noise.ok_or_else(|| "give a noise such as 1% or 0.01".to_owned())
+}
+
+fn tau(text: &str) -> Result<f64, String> {
+    let tau = text.parse::<f64>().ok().filter(|tau| *tau >= 0.0);
+    tau.ok_or_else(|| "give a number from 0 on, or inf".to_owned())
 }
 
 /// The renderers behind primary-sample space.
@@ -119,6 +231,8 @@ fn share(text: &str) -> Result<f64, String> {
 /// The integrators by the names they have on the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum IntegratorName {
+    /// Base samples for what they find well, Metropolis light transport for the rest.
+    Auto,
     /// Metropolis light transport.
     Mlt,
     /// Metropolis light transport over the random numbers of a renderer.
@@ -132,6 +246,7 @@ pub enum IntegratorName {
 impl From<IntegratorName> for Integrator {
     fn from(name: IntegratorName) -> Self {
         match name {
+            IntegratorName::Auto => Self::Auto,
             IntegratorName::Mlt => Self::Mlt,
             IntegratorName::Pssmlt => Self::Pssmlt,
             IntegratorName::Bdpt => Self::Bdpt,
@@ -166,10 +281,11 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<ExitCode> {
         },
         ensemble: args.chains.for_a_picture(&scene, &wishes)?,
         primary: args.primary.settings(args.integrator)?,
+        dial: args.replicates.dial(args.integrator)?,
     };
     let what = format!("{}, {}", scene.name(), settings.integrator.name());
     let meter = Meter::new(what, "rendered");
-    let Rendering { image, mut report } = render(&scene, &settings, |at| show(&meter, at));
+    let Rendering { image, mut report, .. } = make(args, &scene, &settings, &meter)?;
     meter.finish();
     if let Some(reference) = &reference {
         report.relative_mse = Some(relative_mse(image.pixels(), reference.pixels()));
@@ -182,6 +298,32 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<ExitCode> {
     }
     print(&mut io::stdout().lock(), &report, &args.output)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Makes the picture, and keeps its replicates where that is wanted.
+fn make(
+    args: &RenderArgs,
+    scene: &Scene,
+    settings: &RenderSettings,
+    meter: &Meter,
+) -> anyhow::Result<Rendering> {
+    if settings.integrator != Integrator::Auto {
+        return Ok(render(scene, settings, |at| show(meter, at)));
+    }
+    let wanted = &args.replicates;
+    let begun = wanted.begun()?;
+    let mut save = |part: &Part| match &wanted.film_out {
+        Some(file) => super::merge::write(file, part),
+        None => Ok(()),
+    };
+    let wish = Wish {
+        selection: wanted.replicates.clone(),
+        begun,
+        until: wanted.until,
+        save: wanted.film_out.is_some().then_some(&mut save),
+        ..Wish::none()
+    };
+    auto::render(scene, settings, wish, &mut |at| show(meter, at))
 }
 
 /// Refuses a reference of another size than the scene's film.
@@ -265,7 +407,9 @@ fn print(out: &mut impl Write, report: &Report, file: &Path) -> io::Result<()> {
         per(report.rays),
         per(report.shadow_rays),
     )?;
-    if report.chains > 0 {
+    if report.replicates > 0 || !report.selection.is_empty() {
+        print_replicates(out, report)?;
+    } else if report.chains > 0 {
         writeln!(
             out,
             "mean luminance b = {:.6} +- {:.6} ({:.2} %) from {} samples in {:.2} s; {} chains, \
@@ -291,6 +435,54 @@ fn print(out: &mut impl Write, report: &Report, file: &Path) -> io::Result<()> {
         )?;
     }
     writeln!(out, "written to {}", file.display())
+}
+
+/// How the work was divided, what came of it, and how to make the same picture again.
+fn print_replicates(out: &mut impl Write, report: &Report) -> io::Result<()> {
+    if let Some(outlook) = report.outlook {
+        let base = outlook.base.map_or("no base samples", |base| base.name());
+        writeln!(
+            out,
+            "base: {base}, tau {:.3}; chains have {:.2} % of the light, with {:.2} mutations for each \
+             base sample; {}",
+            outlook.tau,
+            100.0 * outlook.chains_share,
+            outlook.mutations_per_sample,
+            match (report.chains, outlook.is_equalised) {
+                (0, _) => "chains would not pay, so there are none".to_owned(),
+                (n, false) => format!("{n} chains in each replicate"),
+                (n, true) =>
+                    format!("{n} chains in each replicate, dark parts as often as bright ones"),
+            },
+        )?;
+    }
+    if report.chains > 0 {
+        writeln!(
+            out,
+            "mean luminance of what chains have, b = {:.6} +- {:.6}; pools of {} samples; longest stay \
+             at one path {} steps; {} proposals were no number",
+            report.normalization,
+            report.normalization_error,
+            report.bootstrap_samples,
+            report.longest_dwell,
+            report.not_finite,
+        )?;
+    }
+    let noise =
+        report.noise.map_or("unknown".to_owned(), |noise| format!("{:.2} %", 100.0 * noise));
+    writeln!(
+        out,
+        "{} replicates after {:.2} s of pilot; noise {noise}; again with --replicates {}",
+        report.replicates, report.seeding_seconds, report.selection,
+    )?;
+    if report.mean_kurtosis.is_some_and(|kurtosis| kurtosis > HEAVY) {
+        writeln!(
+            out,
+            "few replicates have most of the light (kurtosis {:.0}): the errors are not to be trusted",
+            report.mean_kurtosis.unwrap_or(0.0)
+        )?;
+    }
+    Ok(())
 }
 
 /// What each strategy did. Every rate is a share of all tries of the strategy, failures included.
@@ -372,7 +564,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let image = folder.path().join("a.exr");
         let json = folder.path().join("a.json");
-        for integrator in ["mlt", "pssmlt", "bdpt", "path"] {
+        for integrator in ["auto", "mlt", "pssmlt", "bdpt", "path"] {
             let line = format!(
                 "tracer-server render cornell --width 16 --height 16 --mutations-per-pixel 4 \
                  --chains 16 --integrator {integrator} -o {} --stats-json {}",

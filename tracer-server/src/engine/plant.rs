@@ -162,7 +162,8 @@ impl<'a> Plant<'a> {
                 let more = (error / b / precision).powi(2);
                 let samples = self.settings.bootstrap_samples as f64 * more;
                 self.precision = precision;
-                self.settings.bootstrap_samples = (samples as u64).clamp(LEAST_SAMPLES, MOST_SAMPLES);
+                self.settings.bootstrap_samples =
+                    (samples as u64).clamp(LEAST_SAMPLES, MOST_SAMPLES);
                 Ok(self.restart(format!("started anew, with b known to {precision}"), author))
             }
             ChainCommand::Restart { seed } => {

@@ -1,5 +1,4 @@
-//! Evenly spread numbers: Sobol's sequence with the scrambling of Owen \[1995\], by the hash of
-//! Burley \[2020\].
+//! Evenly spread numbers: Sobol's sequence, scrambled \[Owen 1995\] by a hash \[Burley 2020\].
 //!
 //! The crate behind it gives 23 bits of at most 2^16 points. Here every coordinate is shifted
 //! digitally (exclusive or) by 53 random bits, which keeps points as evenly spread as they were and
@@ -18,7 +17,7 @@ pub struct Strata {
     key: u64,
 }
 
-/// A well mixed number \[Stafford 2011, variant 13\].
+/// A well mixed number: the finaliser of `SplitMix64`.
 #[inline]
 fn mix(mut x: u64) -> u64 {
     x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);

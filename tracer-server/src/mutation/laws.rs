@@ -303,7 +303,7 @@ fn wrong_caustic_perturbations_are_found() {
     let mut right = CausticPerturbation::new(scene.camera());
     right.radius.max = 16.0;
     for mutant in mutants::of_caustic(right) {
-        assert_found(&mutant, &scene, Test::Proposals(10), 20_000);
+        assert_found(&mutant, &scene, Test::Proposals(10), 40_000);
     }
 }
 
@@ -312,7 +312,7 @@ fn wrong_multi_chain_perturbations_are_found() {
     let (slab, pane) = (slab_over_floor(true).build(), wall_and_lamp_in_a_pane().build());
     for mutant in mutants::of_multi_chain(wide_multi_chain(&slab)) {
         let scene = if mutant.needs_glass { &pane } else { &slab };
-        assert_found(&mutant, scene, Test::Proposals(10), 110_000);
+        assert_found(&mutant, scene, Test::Proposals(10), 200_000);
     }
 }
 
@@ -320,7 +320,7 @@ fn wrong_multi_chain_perturbations_are_found() {
 fn wrong_primary_mutations_are_found() {
     let (room, glass) = (specular_room().build(), floor_through_glass().build());
     for mutant in mutants::of_primary(Primary::default()) {
-        let (scene, samples) = if mutant.needs_glass { (&glass, 50_000) } else { (&room, 15_000) };
+        let (scene, samples) = if mutant.needs_glass { (&glass, 100_000) } else { (&room, 30_000) };
         assert_found(&mutant, scene, Test::Steps(3), samples);
     }
 }

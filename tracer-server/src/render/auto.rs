@@ -6,9 +6,7 @@ use cpu_time::ProcessTime;
 
 use super::{Budget, Progress, RenderSettings, Rendering, Report, chain_report};
 use crate::parallel::Stop;
-use crate::replicate::{
-    Advance, Ledger, Limits, Origin, Part, Picture, Plan, Selection, prepare,
-};
+use crate::replicate::{Advance, Ledger, Limits, Origin, Part, Picture, Plan, Selection, prepare};
 use crate::scene::Scene;
 
 /// Numbers of replicates after which a picture that is to reach an error is looked at: each is about
@@ -152,7 +150,7 @@ fn deadline(budget: Budget, began: Instant) -> Option<Instant> {
 }
 
 /// A picture at work.
-struct Job<'a> {
+struct Job<'a, 'w> {
     scene: &'a Scene,
     plan: &'a Plan,
     origin: Origin,
@@ -160,11 +158,11 @@ struct Job<'a> {
     budget: Budget,
     began: Instant,
     saved: Instant,
-    save: Option<&'a mut (dyn FnMut(&Part) -> anyhow::Result<()> + Send)>,
+    save: Option<&'w mut (dyn FnMut(&Part) -> anyhow::Result<()> + Send)>,
     trouble: Option<anyhow::Error>,
 }
 
-impl Job<'_> {
+impl Job<'_, '_> {
     fn work(
         &mut self,
         picture: &mut Picture,
@@ -180,7 +178,9 @@ impl Job<'_> {
         let mut on_advance = |advance: Advance, picture: Option<&Picture>| {
             let share = match budget {
                 Budget::PerPixel(_) => advance.replicates / all,
-                Budget::Time(limit) => began.elapsed().as_secs_f64() / limit.as_secs_f64().max(1e-9),
+                Budget::Time(limit) => {
+                    began.elapsed().as_secs_f64() / limit.as_secs_f64().max(1e-9)
+                }
             };
             on_progress(Progress::Rendering(share.min(1.0)));
             if let Some(picture) = picture.filter(|_| self.saved.elapsed() > SAVING) {

@@ -243,7 +243,9 @@ impl Work {
         let seed = settings.ensemble.seed;
         match settings.integrator {
             // Pictures of replicates are made elsewhere.
-            Integrator::Auto | Integrator::Mlt => Self::Mlt(Ensemble::new(scene, &settings.ensemble, on_seeding)),
+            Integrator::Auto | Integrator::Mlt => {
+                Self::Mlt(Ensemble::new(scene, &settings.ensemble, on_seeding))
+            }
             Integrator::Pssmlt => {
                 let settings = (&settings.ensemble, settings.primary);
                 Self::Pssmlt(PrimaryEnsemble::new(scene, settings, on_seeding))

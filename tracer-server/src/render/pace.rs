@@ -66,7 +66,11 @@ impl Pace {
         let all = self.total / grain;
         let rounds = all.clamp(1, ROUNDS);
         let upto = |round: u64| {
-            if round >= rounds { self.total } else { (all / rounds * round + (all % rounds).min(round)) * grain }
+            if round >= rounds {
+                self.total
+            } else {
+                (all / rounds * round + (all % rounds).min(round)) * grain
+            }
         };
         let amount = upto(self.rounds + 1).saturating_sub(self.done);
         (amount > 0 && self.done < self.total).then_some(amount)

@@ -143,13 +143,7 @@ impl Estimate {
 impl Ledger {
     /// No replicate yet of a picture of this size.
     pub fn new(width: u32, height: u32, quantum: f64) -> Self {
-        Self {
-            width,
-            height,
-            quantum,
-            rows: Vec::new(),
-            columns: Columns::new(width, height),
-        }
+        Self { width, height, quantum, rows: Vec::new(), columns: Columns::new(width, height) }
     }
 
     /// Of sums that were read.
@@ -302,7 +296,8 @@ impl Ledger {
         let n = self.rows.len() as f64;
         let reliable = |pixel: usize| {
             let mean = self.luminance_sum(pixel) / n;
-            let squares = self.variance(mean * n, self.columns.luminance_squares[pixel]) * n * (n - 1.0);
+            let squares =
+                self.variance(mean * n, self.columns.luminance_squares[pixel]) * n * (n - 1.0);
             let peak = f64::from(self.columns.peaks[pixel]) / self.quantum - mean;
             self.count() >= ENOUGH && !(peak * peak > DOMINANT * squares)
         };

@@ -12,6 +12,8 @@
 //! Everything in a replicate follows from scene, plan and its number: neither the number of threads
 //! nor the range of replicates that is worked on changes a bit of it.
 
+#[cfg(test)]
+mod laws;
 mod ledger;
 mod part;
 mod pilot;

@@ -175,7 +175,7 @@ impl Part {
             }
             rows.push(Row::of(words));
         }
-        let columns = Columns::read(&mut file, width, height)?;
+        let columns = Columns::read(&mut file, width, height).map_err(cut_short)?;
         let expected = file.hasher.finalize();
         let mut digest = [0; 32];
         file.inner.read_exact(&mut digest).map_err(|_error| PartError::Damaged)?;
@@ -184,6 +184,14 @@ impl Part {
         }
         let ledger = Ledger::from_parts((width, height), quantum, rows, columns);
         Ok(Self { origin: head.origin, ledger })
+    }
+}
+
+/// A file that ends before it should is damaged.
+fn cut_short(error: io::Error) -> PartError {
+    match error.kind() {
+        io::ErrorKind::UnexpectedEof => PartError::Damaged,
+        _ => PartError::File(error),
     }
 }
 
@@ -208,10 +216,7 @@ impl<T: Write> Write for Digested<T> {
 impl<T: Read> Digested<T> {
     /// Fills `bytes`; a file that ends before is damaged.
     fn take_exact(&mut self, bytes: &mut [u8]) -> Result<(), PartError> {
-        self.inner.read_exact(bytes).map_err(|error| match error.kind() {
-            io::ErrorKind::UnexpectedEof => PartError::Damaged,
-            _ => PartError::File(error),
-        })?;
+        self.inner.read_exact(bytes).map_err(cut_short)?;
         self.hasher.update(bytes);
         Ok(())
     }

@@ -12,10 +12,10 @@ use std::sync::Arc;
 use common::Rgb;
 
 use super::plan::{Outlook, Plan};
-use crate::base::work_of_paths;
+use crate::base::{BaseSampler, Pass, work_of_paths};
 use crate::chain::{Chain, Kernel, PilotSettings, PoolKey, Sighting, Source, Survey, survey};
 use crate::film::Film;
-use crate::math::{Rng, Stream};
+use crate::math::{Rng, Strata, Stream};
 use crate::mutation::StrategyOptions;
 use crate::parallel;
 use crate::scene::{RayCounts, Scene, Tracer};
@@ -44,6 +44,18 @@ const STEPS: f64 = 1000.0;
 /// Dials that are looked at: powers of two times the mean luminance.
 const DIALS: std::ops::RangeInclusive<i32> = -6..=10;
 
+/// A dial that is right for many scenes.
+const LIKELY: f64 = 4.0;
+
+/// Pixels through which base samples are drawn, by base sampler, and samples of a group.
+const LOOKED_AT: [u32; 2] = [768, 192];
+/// See [`LOOKED_AT`].
+const GROUP: u32 = 4;
+/// Terms of a base sample that are brighter than so many times the mean are looked for among whole paths.
+const COMMON: f64 = 8.0;
+/// By how much better work in bulky parts must be than work that a budget can cut anywhere.
+const BULKY: f64 = 1.25;
+
 /// Rays that a mutation is worth beside those that it casts.
 const MUTATION: f64 = 3.0;
 
@@ -67,12 +79,10 @@ pub fn prepare(
     let settings = PilotSettings { seed, threads, samples: SAMPLES };
     let survey = survey(scene, options, &settings);
     let view = View::new(scene, survey);
-    let mut choice = view.choose(dial, view.first_guess(scene));
-    if choice.chains_share > 0.0 {
-        // The chains of this choice tell more, and may change it.
-        let scouting = view.scout(scene, (seed, threads), &view.kernel(&choice));
-        choice = view.choose(dial, scouting);
-    }
+    // Chains of a likely choice tell more, and may change it.
+    let likely = view.choose(Dial { tau: dial.tau.or(Some(LIKELY)), ..dial }, FIRST_GUESS);
+    let scouting = view.scout(scene, (seed, threads), &view.kernel(&likely));
+    let choice = view.choose(dial, scouting);
     view.plan(scene, seed, &choice)
 }
 
@@ -94,6 +104,9 @@ struct Scouting {
     /// Mutations that are worth one independent sample.
     correlation: f64,
 }
+
+/// Before any chain has run.
+const FIRST_GUESS: Scouting = Scouting { mutation: MUTATION + 3.0, correlation: 2.0 };
 
 /// One way to divide the work.
 #[derive(Clone, Copy, Debug)]
@@ -117,8 +130,25 @@ struct View {
     weights: Vec<f64>,
     luminances: Vec<f64>,
     mean: f64,
+    pixels: f64,
     /// Work of a base sample through one pixel, by base sampler.
     work: [f64; 2],
+    /// What base samples through some pixels carry, by base sampler.
+    looks: [Vec<Look>; 2],
+}
+
+/// What one term of a base sample carries.
+#[derive(Clone, Copy, Debug)]
+struct Look {
+    /// Number of the pixel among those looked at, and which of two groups of samples through it.
+    place: (u32, bool),
+    /// Whether it counts in the pixel that the sample was drawn through.
+    is_own: bool,
+    /// Weight of a squared error where it counts.
+    omega: f64,
+    luminance: f64,
+    density_sum: f64,
+    edges: usize,
 }
 
 fn tile(sighting: &Sighting) -> usize {
@@ -141,12 +171,74 @@ impl View {
         let square = luminances.iter().map(|l| l * l).sum::<f64>() / luminances.len() as f64;
         let weights = luminances.iter().map(|l| 1.0 / (l * l + 0.01 * square)).collect();
         let bidirectional = work_of_bidirectional(survey.rays) / samples;
-        Self { weights, luminances, mean, work: [work_of_paths(scene), bidirectional], survey }
+        let work = [work_of_paths(scene), bidirectional];
+        let pixels = scene.camera().pixel_count() as f64;
+        let mut view =
+            Self { weights, luminances, mean, pixels, work, looks: Default::default(), survey };
+        view.looks = Base::ALL.map(|base| view.look(scene, base));
+        view
     }
 
-    /// Before any chain has run.
-    fn first_guess(&self, _: &Scene) -> Scouting {
-        Scouting { mutation: MUTATION + 3.0, correlation: 3.0 }
+    /// Draws two groups of base samples through some pixels, spread as they will be.
+    fn look(&self, scene: &Scene, base: Base) -> Vec<Look> {
+        let tracer = Tracer::new(scene);
+        let mut sampler = BaseSampler::new(&tracer, Selective { base, tau: f64::INFINITY });
+        let mut rng = Rng::new(0, Stream::Scout, u64::MAX - 1);
+        let mut looks = Vec::new();
+        let camera = scene.camera();
+        for number in 0..LOOKED_AT[base as usize] {
+            let pixel = rng.below(camera.pixel_count());
+            for second in [false, true] {
+                let strata =
+                    Strata::new(0, Stream::Scout, u64::from(number) << 1 | u64::from(second));
+                for index in 0..GROUP {
+                    let pass = Pass { strata, index };
+                    sampler.look(&tracer, pass, pixel, |at, luminance, density_sum, edges| {
+                        let (x, y) = (at as u32 % camera.width, at as u32 / camera.width);
+                        let place = glam::DVec2::new(
+                            (f64::from(x) + 0.5) / f64::from(camera.width),
+                            (f64::from(y) + 0.5) / f64::from(camera.height),
+                        );
+                        looks.push(Look {
+                            place: (number, second),
+                            is_own: at == pixel,
+                            omega: self.weight_at(place),
+                            luminance,
+                            density_sum,
+                            edges,
+                        });
+                    });
+                }
+            }
+        }
+        looks
+    }
+
+    /// Relative variance of a picture with one base sample for each pixel, but for terms of more than
+    /// [`COMMON`] times the mean, which are too rare to be seen by few samples.
+    fn common_variance(&self, selective: Selective) -> f64 {
+        let count = LOOKED_AT[selective.base as usize];
+        let mut groups = vec![[0.0; 2]; count as usize];
+        let mut omegas = vec![0.0; count as usize];
+        let mut others = 0.0;
+        for look in &self.looks[selective.base as usize] {
+            if 1.0 / look.density_sum > COMMON * self.mean && look.edges > 1 {
+                continue;
+            }
+            let share = selective.base_share(look.density_sum, look.edges);
+            let value = look.luminance * share;
+            if look.is_own {
+                let (number, second) = look.place;
+                groups[number as usize][usize::from(second)] += value;
+                omegas[number as usize] = look.omega;
+            } else {
+                others += value * value * look.omega;
+            }
+        }
+        let samples = f64::from(count * 2 * GROUP);
+        let square = |([a, b], omega): (&[f64; 2], &f64)| (a - b).powi(2) * omega;
+        let own: f64 = groups.iter().zip(&omegas).map(square).sum();
+        (own + others) / samples
     }
 
     /// The best way to divide the work, as far as the dial is free.
@@ -175,7 +267,6 @@ impl View {
     fn judge(&self, base: Option<Selective>, scouting: Scouting) -> Choice {
         let samples = self.survey.samples as f64;
         let (mut second, mut fourth) = (0.0, 0.0);
-        let mut carried = vec![0.0; self.weights.len()];
         // Light of the chains; weighted errors where it is visited as it is, and made even.
         let (mut light, mut errors, mut even) = (0.0, 0.0, 0.0);
         let mut found_all = true;
@@ -186,12 +277,11 @@ impl View {
             let (mut g, mut term) = (1.0, 0.0);
             if let Some(selective) = base {
                 let sum = sighting.density_sum(selective.base);
-                let share = selective.base_share(sum);
+                let share = selective.base_share(sum, sighting.edges);
                 g = 1.0 - share;
                 found_all &= sum > 0.0;
-                if sum > 0.0 {
+                if sum > 0.0 && 1.0 / sum > COMMON * self.mean && sighting.edges > 1 {
                     term = weight * share * share / sum * omega;
-                    carried[tile] += weight * share * (TILES * TILES) as f64;
                 }
             }
             second += term;
@@ -201,10 +291,8 @@ impl View {
             even += weight * g * omega.sqrt();
         }
         // What the tail of rare bright terms may still hide counts as seen.
-        let seen = second + 2.0 * fourth.sqrt();
-        let known = carried.iter().zip(&self.weights).map(|(c, w)| c * c * w).sum::<f64>()
-            / carried.len() as f64;
-        let first = if base.is_some() { (seen - known).max(0.3 * seen) } else { 0.0 };
+        let rare = second + 2.0 * fourth.sqrt();
+        let first = base.map_or(0.0, |selective| self.common_variance(selective) + rare);
         let nothing_left = base.is_some_and(|b| b.tau.is_infinite()) && found_all;
         let plain = light * errors;
         let is_equalised = even * even < 0.8 * plain;
@@ -213,7 +301,20 @@ impl View {
         let sample = base.map_or(0.0, |selective| self.work[selective.base as usize]);
         // Pools are paid for by the chains.
         let mutation = scouting.mutation * (1.0 + POOL_SHARE);
-        let score = ((first * sample).sqrt() + (second * mutation).sqrt()).powi(2);
+        let best = ((first * sample).sqrt() + (second * mutation).sqrt()).powi(2);
+        let ratio = (second * sample / (first * mutation)).sqrt();
+        let part = self.pixels * (sample + ratio.clamp(0.0, MUTATIONS.1) * mutation);
+        // A budget of time is met part by part.
+        let is_bulky = base.is_some() && second > 0.0 && part > REPLICATE_WORK;
+        let score = if is_bulky { BULKY * best } else { best };
+        tracing::debug!(
+            "{:?}, tau {:.3}: {score:.3} of samples {first:.4} x {sample:.1} (rare {rare:.4}), \
+             mutations {second:.4} x {mutation:.1} (correlation {:.2}, {:.2} % of the light)",
+            base.map(|b| b.base),
+            base.map_or(0.0, |b| b.tau / self.mean),
+            scouting.correlation,
+            100.0 * light / self.mean,
+        );
         Choice {
             base,
             is_equalised,
@@ -253,7 +354,7 @@ impl View {
                 scout.run(kernel, Chain::with_stream(common::ChainId(0), rng, start, kernel), self)
             },
         );
-        let guess = self.first_guess(scene);
+        let guess = FIRST_GUESS;
         let (mut spread, mut work) = (0.0, 0.0);
         for run in &runs {
             spread += run.0;
@@ -293,18 +394,20 @@ impl View {
         let mutations = ratio * pixels * f64::from(parts);
         let kernel = self.kernel(choice);
         let diverse = pool as f64 * self.effective_share(&kernel.target) / DIVERSITY;
-        let chains = if has_chains {
-            (mutations / STEPS).min(diverse).clamp(4.0, 1024.0) as u32
-        } else {
-            0
-        };
-        let steps = (mutations / f64::from(chains.max(1)) / f64::from(parts)).ceil().max(1.0) as u64;
+        let chains =
+            if has_chains { (mutations / STEPS).min(diverse).clamp(4.0, 1024.0) as u32 } else { 0 };
+        let steps =
+            (mutations / f64::from(chains.max(1)) / f64::from(parts)).ceil().max(1.0) as u64;
         let outlook = Outlook {
             base: choice.base.map(|selective| selective.base),
             tau: choice.base.map_or(0.0, |selective| selective.tau),
             chains_share: if has_chains { choice.chains_share } else { 0.0 },
             mutations_per_sample: ratio,
-            pool_share: if has_chains { pool as f64 * pooled / (work + pool as f64 * pooled) } else { 0.0 },
+            pool_share: if has_chains {
+                pool as f64 * pooled / (work + pool as f64 * pooled)
+            } else {
+                0.0
+            },
             correlation: choice.scouting.correlation,
             is_equalised: choice.is_equalised && has_chains,
         };
@@ -337,7 +440,9 @@ impl View {
     fn rho(&self, sighting: &Sighting, target: &Target) -> f64 {
         match target {
             Target::Whole => 1.0,
-            Target::Selective(s) => 1.0 - s.base_share(sighting.density_sum(s.base)),
+            Target::Selective(s) => {
+                1.0 - s.base_share(sighting.density_sum(s.base), sighting.edges)
+            }
             Target::Equalised(equalised) => {
                 equalised.at(glam::Vec2::from(sighting.film).as_dvec2())
             }

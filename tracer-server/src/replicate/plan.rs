@@ -103,7 +103,8 @@ impl Plan {
     /// small that rounding is beneath any noise.
     pub fn quantum(&self) -> f64 {
         const BITS: i32 = 30;
-        let exponent = if self.brightness > 0.0 { self.brightness.log2().floor() as i32 } else { 0 };
+        let exponent =
+            if self.brightness > 0.0 { self.brightness.log2().floor() as i32 } else { 0 };
         2_f64.powi(exponent - BITS)
     }
 }

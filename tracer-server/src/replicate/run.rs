@@ -1,5 +1,6 @@
 //! Replicates on many threads.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -115,11 +116,13 @@ impl Picture {
         let whole = selection.numbers().filter(is_missing).map(|number| (number, plan.parts));
         let tails = selection.tails.iter().map(|&(number, parts)| (number, parts.min(plan.parts)));
         let done = self.ledger.count() as f64;
+        let over = AtomicBool::new(false);
+        let is_on = |_: &(u64, u32)| !over.load(Ordering::Relaxed);
         let shared = Mutex::new(Shared { picture: self, on_advance, done, begun });
         parallel::for_each(
             limits.threads,
-            whole.chain(tails).enumerate(),
-            || Worker::new(scene, limits),
+            whole.chain(tails).take_while(is_on).enumerate(),
+            || Worker::new(scene, limits, &over),
             |worker, order| worker.work(plan, order, &shared),
         );
     }
@@ -136,7 +139,8 @@ struct Shared<'a> {
 impl Shared<'_> {
     fn advance(&mut self, replicates: f64, is_whole: bool) {
         self.done += replicates;
-        let advance = Advance { replicates: self.done, seconds: self.begun.elapsed().as_secs_f64() };
+        let advance =
+            Advance { replicates: self.done, seconds: self.begun.elapsed().as_secs_f64() };
         (self.on_advance)(advance, is_whole.then_some(&*self.picture));
     }
 }
@@ -149,14 +153,14 @@ struct Worker<'a, 's> {
     /// How long the last pool and the last part took.
     pool: Duration,
     part: Duration,
-    /// Time is over.
-    is_over: bool,
+    /// Time is over, or somebody has stopped the work: no other replicate is begun.
+    over: &'a AtomicBool,
 }
 
 impl<'a, 's> Worker<'a, 's> {
-    fn new(scene: &'s Scene, limits: &'a Limits<'a>) -> Self {
+    fn new(scene: &'s Scene, limits: &'a Limits<'a>, over: &'a AtomicBool) -> Self {
         let (pool, part) = (Duration::ZERO, Duration::ZERO);
-        Self { scene: Tracer::new(scene), limits, film: None, pool, part, is_over: false }
+        Self { scene: Tracer::new(scene), limits, film: None, pool, part, over }
     }
 
     /// True when what takes `time` would end later than the deadline by more than it would end earlier
@@ -173,8 +177,8 @@ impl<'a, 's> Worker<'a, 's> {
     ) {
         // The first replicate is always begun: there is to be a picture.
         let late = place > 0 && self.is_late(self.pool + self.part);
-        if self.is_over || self.limits.stop.is_set() || late {
-            self.is_over = true;
+        if self.limits.stop.is_set() || late {
+            self.over.store(true, Ordering::Relaxed);
             return;
         }
         let camera = self.scene.camera();
@@ -185,12 +189,12 @@ impl<'a, 's> Worker<'a, 's> {
         let stop = || self.limits.stop.is_set();
         while replicate.parts() < parts {
             if replicate.parts() > 0 && self.is_late(part) {
-                self.is_over = true;
+                self.over.store(true, Ordering::Relaxed);
                 break;
             }
             let begun = Instant::now();
             if !replicate.part(&stop) {
-                self.is_over = true;
+                self.over.store(true, Ordering::Relaxed);
                 return;
             }
             part = begun.elapsed();

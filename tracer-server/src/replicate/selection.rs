@@ -88,7 +88,9 @@ impl FromStr for Selection {
         }
         selection.whole.sort_by_key(|range| range.start);
         if selection.whole.iter().any(|range| range.start >= range.end) {
-            return Err("a range must end after it begins: 4..8 holds the numbers 4 to 7".to_owned());
+            return Err(
+                "a range must end after it begins: 4..8 holds the numbers 4 to 7".to_owned()
+            );
         }
         let twice = selection.whole.windows(2).any(|pair| pair[0].end > pair[1].start);
         let inside = |number: u64| selection.whole.iter().any(|range| range.contains(&number));

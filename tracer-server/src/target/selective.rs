@@ -8,7 +8,10 @@
 //! splits in B of `p_i v (1 - g) = f (1 - g)` wherever `S_B > 0`, and `1 - g = 0` elsewhere. The chains
 //! carry `f g`. The sum is `f`, whatever `tau` is and whatever splits B has.
 //!
-//! `tau` is a luminance, as `v` is. No term of a base sample exceeds `tau / 2`, since
+//! A light that is seen directly is the base sampler's whatever its brightness (as if `tau` were infinite
+//! for such paths): every sample through a pixel sees it alike, so that it makes no noise.
+//!
+//! `tau` is a luminance, as `v` is. No other term of a base sample exceeds `tau / 2`, since
 //! `v (1 - g) = v tau^2 / (v^2 + tau^2)` is largest at `v = tau`: what would be a bright dot is left to
 //! the chains. At `tau = 0` the chains have all of the light; at infinity only what the base sampler
 //! cannot find.
@@ -65,22 +68,27 @@ impl Selective {
     /// `g` of a path: the share of its light that is the chains'.
     #[inline]
     pub fn chains_share(self, x: &Path) -> f64 {
-        let s = self.scaled(self.base.density_sum(x));
+        let s = self.scaled(self.base.density_sum(x), x.edge_count());
         1.0 / (1.0 + s * s)
     }
 
-    /// `1 - g` of a path whose sum `S_B` is `density_sum`: the share of its light that is the base
-    /// sampler's.
+    /// `1 - g` of a path of `edges` edges whose sum `S_B` is `density_sum`: the share of its light that
+    /// is the base sampler's.
     #[inline]
-    pub fn base_share(self, density_sum: f64) -> f64 {
-        let s = self.scaled(density_sum);
+    pub fn base_share(self, density_sum: f64, edges: usize) -> f64 {
+        let s = self.scaled(density_sum, edges);
         1.0 / (1.0 + 1.0 / (s * s))
     }
 
-    /// `tau S_B`; zero for what the base sampler cannot find, even where `tau` is infinite.
+    /// `tau S_B`: zero for what the base sampler cannot find, even where `tau` is infinite, and where it
+    /// is zero; infinite for a light that is seen directly.
     #[inline]
-    fn scaled(self, density_sum: f64) -> f64 {
-        if density_sum > 0.0 { self.tau * density_sum } else { 0.0 }
+    fn scaled(self, density_sum: f64, edges: usize) -> f64 {
+        match (density_sum > 0.0 && self.tau > 0.0, edges) {
+            (false, _) => 0.0,
+            (true, 1) => f64::INFINITY,
+            (true, _) => self.tau * density_sum,
+        }
     }
 }
 

@@ -25,10 +25,7 @@ impl RayCounts {
     /// What was cast since an earlier count.
     #[must_use]
     pub fn since(self, earlier: Self) -> Self {
-        Self {
-            rays: self.rays - earlier.rays,
-            shadow_rays: self.shadow_rays - earlier.shadow_rays,
-        }
+        Self { rays: self.rays - earlier.rays, shadow_rays: self.shadow_rays - earlier.shadow_rays }
     }
 
     /// Both together.
