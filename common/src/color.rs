@@ -52,6 +52,11 @@ impl Rgb {
         [self.r, self.g, self.b].into_iter().all(|c| c.is_finite() && c >= 0.0)
     }
 
+    /// True where every channel is a number and none is infinite.
+    pub fn is_finite(self) -> bool {
+        [self.r, self.g, self.b].into_iter().all(f64::is_finite)
+    }
+
     /// The channels rounded to `f32`, as they travel and as they are drawn.
     pub fn to_f32(self) -> [f32; 3] {
         [self.r as f32, self.g as f32, self.b as f32]

@@ -4,9 +4,10 @@ use std::path::Path;
 
 use common::Rgb;
 use exr::prelude::{
-    AttributeValue, Encoding, Image, Layer, LayerAttributes, SpecificChannels, Text, Vec2,
-    WritableImage as _, read_first_rgba_layer_from_file,
+    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes,
+    Text, Vec2, WritableImage as _, read_first_rgba_layer_from_file,
 };
+use host::file::{FileError, Output, Place};
 use image::{ImageBuffer, ImageFormat, Rgb as Pixel8};
 use thiserror::Error;
 
@@ -21,6 +22,9 @@ pub enum ImageError {
     /// The name does not tell a format.
     #[error("`{0}` does not tell its format; end the name in .exr or .png")]
     UnknownFormat(String),
+    /// The file cannot be written.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// The EXR library refused.
     #[error("`{file}`: {source}")]
     Exr {
@@ -51,6 +55,65 @@ pub enum Format {
     Png,
 }
 
+/// One more number for every pixel of an image.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plane {
+    /// Its name, such as `error`: the channel is `error.Y`.
+    pub name: &'static str,
+    /// Row by row from the top.
+    pub values: Vec<f32>,
+}
+
+/// Where an image is to go and in what format, known before there is one.
+#[derive(Clone, Debug)]
+pub struct Destination {
+    place: Place,
+    format: Format,
+}
+
+impl Destination {
+    /// Fails where no image can be written at `path`. What has no name of its own, such as a pipe that a
+    /// shell made, gets EXR.
+    pub fn find(path: &Path) -> Result<Self, ImageError> {
+        let is_named = path.extension().is_some();
+        let format = if is_named { Some(Format::of(path)?) } else { None };
+        let place = Place::find(path)?;
+        let format = match format {
+            None if place.is_stream() => Format::Exr,
+            None => Format::of(path)?,
+            Some(format) => format,
+        };
+        Ok(Self { place, format })
+    }
+
+    /// As the user named it.
+    pub fn path(&self) -> &Path {
+        self.place.path()
+    }
+
+    /// True where it is what the program prints to, too.
+    pub fn is_stdout(&self) -> bool {
+        self.place.is_stdout()
+    }
+
+    /// Puts `image` there. `planes` and `metadata` go into EXR files only.
+    pub fn write(
+        &self,
+        image: &Film,
+        planes: &[Plane],
+        metadata: &[(String, String)],
+    ) -> Result<(), ImageError> {
+        let file = || self.path().display().to_string();
+        self.place.write(|output| match self.format {
+            Format::Exr => write_exr(output, (image, planes), metadata)
+                .map_err(|source| ImageError::Exr { file: file(), source }),
+            Format::Png => {
+                write_png(output, image).map_err(|source| ImageError::Png { file: file(), source })
+            }
+        })
+    }
+}
+
 impl Format {
     /// The format that a file's name asks for.
     pub fn of(path: &Path) -> Result<Self, ImageError> {
@@ -65,28 +128,37 @@ impl Format {
 
 /// Writes `image` in the format of the file's name. `metadata` goes into EXR headers.
 pub fn write(path: &Path, image: &Film, metadata: &[(String, String)]) -> Result<(), ImageError> {
-    match Format::of(path)? {
-        Format::Exr => write_exr(path, image, metadata),
-        Format::Png => write_png(path, image),
-    }
+    Destination::find(path)?.write(image, &[], metadata)
 }
 
-fn write_exr(path: &Path, image: &Film, metadata: &[(String, String)]) -> Result<(), ImageError> {
-    let (width, height) = (image.width() as usize, image.height() as usize);
-    let channels = SpecificChannels::rgb(|Vec2(x, y): Vec2<usize>| {
-        <(f32, f32, f32)>::from(image.pixels()[y * width + x].to_f32())
-    });
+/// Text of any script, in UTF-8. What readers of old expect, Latin-1, is the same for ASCII.
+fn exr_text(text: &str) -> Text {
+    Text::from_slice_unchecked(text.as_bytes())
+}
+
+fn write_exr(
+    output: &mut Output,
+    (image, planes): (&Film, &[Plane]),
+    metadata: &[(String, String)],
+) -> Result<(), exr::error::Error> {
+    let size = (image.width() as usize, image.height() as usize);
+    let color = |(index, name): (usize, &str)| {
+        let values = image.pixels().iter().map(|pixel| pixel.to_f32()[index]).collect();
+        AnyChannel::new(name, FlatSamples::F32(values))
+    };
+    let plane = |plane: &Plane| {
+        let name = format!("{}.Y", plane.name);
+        AnyChannel::new(name.as_str(), FlatSamples::F32(plane.values.clone()))
+    };
+    let colors = ["R", "G", "B"].into_iter().enumerate().map(color);
+    let channels = AnyChannels::sort(colors.chain(planes.iter().map(plane)).collect());
     let mut attributes = LayerAttributes::named("");
     attributes.software_name = Some(Text::from("Lvis"));
     for (key, value) in metadata {
-        let (key, value) = (Text::from(key.as_str()), Text::from(value.as_str()));
-        attributes.other.insert(key, AttributeValue::Text(value));
+        attributes.other.insert(exr_text(key), AttributeValue::Text(exr_text(value)));
     }
-    let layer = Layer::new((width, height), attributes, Encoding::SMALL_LOSSLESS, channels);
-    Image::from_layer(layer)
-        .write()
-        .to_file(path)
-        .map_err(|source| ImageError::Exr { file: path.display().to_string(), source })
+    let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
+    Image::from_layer(layer).write().to_buffered(output)
 }
 
 /// The exposure that brings the brighter parts of an image just below white: one over its 98th
@@ -107,15 +179,13 @@ fn encode_srgb(linear: f64) -> u8 {
     (encoded.clamp(0.0, 1.0) * 255.0).round() as u8
 }
 
-fn write_png(path: &Path, image: &Film) -> Result<(), ImageError> {
+fn write_png(output: &mut Output, image: &Film) -> Result<(), image::ImageError> {
     let exposure = auto_exposure(image);
     let mut bytes = ImageBuffer::new(image.width(), image.height());
     for (pixel, &Rgb { r, g, b }) in bytes.pixels_mut().zip(image.pixels()) {
         *pixel = Pixel8([r, g, b].map(|c| encode_srgb(c * exposure)));
     }
-    bytes
-        .save_with_format(path, ImageFormat::Png)
-        .map_err(|source| ImageError::Png { file: path.display().to_string(), source })
+    bytes.write_to(output, ImageFormat::Png)
 }
 
 /// Reads the first layer of an EXR file.
@@ -154,14 +224,37 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("gradient.exr");
         let metadata = [("lvis.seed".to_owned(), "7".to_owned())];
-        write(&path, &gradient(), &metadata).expect("an EXR file is written");
+        let errors = Plane { name: "error", values: (0..15).map(|i| i as f32).collect() };
+        let place = Destination::find(&path).expect("a place");
+        place.write(&gradient(), &[errors], &metadata).expect("an EXR file is written");
         let back = read_exr(&path).expect("and read");
         for (a, b) in back.pixels().iter().zip(gradient().pixels()) {
             assert_eq!(a.to_f32(), b.to_f32(), "pixels survive");
         }
         let meta = exr::meta::MetaData::read_from_file(&path, false).expect("the header is read");
+        let channels = &meta.headers[0].channels.list;
+        let names: Vec<String> = channels.iter().map(|c| c.name.to_string()).collect();
+        assert_eq!(names, ["B", "G", "R", "error.Y"], "channels");
         let seed = meta.headers[0].own_attributes.other.get(&Text::from("lvis.seed"));
         assert_eq!(seed, Some(&AttributeValue::Text(Text::from("7"))), "metadata survives");
+    }
+
+    /// Names of scenes come from files' names, which may be in any script.
+    #[test]
+    fn metadata_may_be_in_any_script() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("сцена – l’été.exr");
+        let long = "場".repeat(300);
+        for name in ["сцена", "l’été", "Küche", "a\nb\0c", "", &long] {
+            let metadata = [("lvis.scene".to_owned(), name.to_owned())];
+            write(&path, &gradient(), &metadata).expect("an EXR file is written");
+            let back = read_exr(&path).expect("and read");
+            assert_eq!(back.pixels()[14].to_f32(), gradient().pixels()[14].to_f32(), "{name}");
+            let meta = exr::meta::MetaData::read_from_file(&path, true).expect("a sound header");
+            let read = meta.headers[0].own_attributes.other.get(&Text::from("lvis.scene"));
+            let Some(AttributeValue::Text(read)) = read else { panic!("{name}: {read:?}") };
+            assert_eq!(read.as_slice(), name.as_bytes(), "UTF-8");
+        }
     }
 
     #[test]

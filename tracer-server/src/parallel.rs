@@ -5,19 +5,34 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread;
 
-/// A wish that work should end, which anybody may utter and all workers hear.
+/// Tells workers to leave what is not done yet; clones share it, and it is never taken back.
+///
+/// Workers look at it between pieces of work, so that work that was not stopped has the same bits as
+/// work that nobody could have stopped.
 #[derive(Clone, Debug, Default)]
 pub struct Stop(Arc<AtomicBool>);
 
 impl Stop {
-    /// Utters it.
+    /// Tells everyone.
     pub fn set(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// True once it was uttered.
+    /// True from the first [`Stop::set`] on.
     pub fn is_set(&self) -> bool {
         self.0.load(Ordering::Relaxed)
+    }
+
+    /// Does `work` so many `times` unless it is told to stop before; returns how often it was done.
+    pub fn repeat(&self, times: u64, mut work: impl FnMut()) -> u64 {
+        const BETWEEN_LOOKS: u64 = 1024;
+        let mut done = 0;
+        while done < times && !self.is_set() {
+            let now = BETWEEN_LOOKS.min(times - done);
+            (0..now).for_each(|_| work());
+            done += now;
+        }
+        done
     }
 }
 

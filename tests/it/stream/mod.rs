@@ -277,6 +277,18 @@ async fn a_flood_of_connections_is_cut_off_and_survived() {
     });
     let (idle, refused) = soon("the flood", flood).await.expect("no panic");
     assert!(refused > 0, "three hundred connections are too many");
+    let told = async {
+        // Those who were told before make room for the next to be told.
+        loop {
+            match Viewer::join(&server).await {
+                Err(status) if status.code() == Code::ResourceExhausted => return status,
+                Err(_) => tokio::time::sleep(Duration::from_millis(50)).await,
+                Ok(_) => panic!("there is no room"),
+            }
+        }
+    };
+    let status = soon("somebody who is told why", told).await;
+    assert!(status.message().contains("full"), "{status}");
     let (sent, paths) = batch(1000);
     server.hub().publish_paths(sent);
     match witness.next_data().await {
@@ -306,6 +318,7 @@ async fn health_and_reflection_answer() {
     use tonic_reflection::pb::v1::server_reflection_client::ServerReflectionClient;
     use tonic_reflection::pb::v1::server_reflection_request::MessageRequest;
     use tonic_reflection::pb::v1::{ServerReflectionRequest, server_reflection_response};
+    use tonic_reflection::pb::v1alpha as early;
 
     let server = start(HubLimits::default());
     let endpoint = Endpoint::from_shared(format!("http://{}", server.address())).expect("an URI");
@@ -316,7 +329,7 @@ async fn health_and_reflection_answer() {
 
     let list = MessageRequest::ListServices(String::new());
     let request = ServerReflectionRequest { host: String::new(), message_request: Some(list) };
-    let mut answers = ServerReflectionClient::new(channel)
+    let mut answers = ServerReflectionClient::new(channel.clone())
         .server_reflection_info(tokio_stream::once(request))
         .await
         .expect("an answer")
@@ -330,6 +343,24 @@ async fn health_and_reflection_answer() {
     let names: Vec<_> = list.service.iter().map(|service| service.name.as_str()).collect();
     assert!(names.contains(&"lvis.v1.Tracer"), "{names:?}");
     assert!(names.contains(&"grpc.health.v1.Health"), "{names:?}");
+
+    // What most tools still ask, word for word the same but for the version.
+    let list = early::server_reflection_request::MessageRequest::ListServices(String::new());
+    let request =
+        early::ServerReflectionRequest { host: String::new(), message_request: Some(list) };
+    let mut answers = early::server_reflection_client::ServerReflectionClient::new(channel)
+        .server_reflection_info(tokio_stream::once(request))
+        .await
+        .expect("an answer")
+        .into_inner();
+    let answer = answers.message().await.expect("no error").expect("one answer");
+    let Some(early::server_reflection_response::MessageResponse::ListServicesResponse(early)) =
+        answer.message_response
+    else {
+        panic!("not a list of services");
+    };
+    let early: Vec<_> = early.service.iter().map(|service| service.name.as_str()).collect();
+    assert!(early.contains(&"lvis.v1.Tracer"), "{early:?}");
     stop(server).await;
 }
 

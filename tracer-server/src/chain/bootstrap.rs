@@ -2,7 +2,7 @@
 
 use super::Pool;
 use crate::math::{Rng, Stream};
-use crate::parallel;
+use crate::parallel::{self, Stop};
 use crate::path::{Aim, BidirectionalSampler, Path};
 use crate::scene::{Scene, Tracer};
 use crate::target::Target;
@@ -83,11 +83,12 @@ impl<'a, 's> Source<'a, 's> {
     }
 }
 
-/// Draws a pool on many threads; `on_progress` hears the number of samples drawn.
+/// Draws a pool on many threads; one that is told to `stop` is empty. `on_progress` hears the number of samples drawn.
 pub fn draw_pool(
     scene: &Scene,
     (key, target): (PoolKey, &Target),
     (samples, threads): (u64, usize),
+    stop: &Stop,
     on_progress: impl FnMut(u64),
 ) -> Pool {
     let start = || Tracer::new(scene);
@@ -95,15 +96,16 @@ pub fn draw_pool(
         let mut source = Source::new(tracer, key, target);
         numbers.map(|number| source.weight(number)).collect()
     };
-    Pool::gather((samples, threads), start, draw, on_progress)
+    Pool::gather((samples, threads), start, draw, stop, on_progress)
 }
 
 impl Pool {
-    /// Gathers `samples` weights in chunks, which `draw` gives by their numbers.
+    /// Gathers `samples` weights in chunks, which `draw` gives by their numbers; none when told to `stop`.
     pub fn gather<S: Send>(
         (samples, threads): (u64, usize),
         start: impl Fn() -> S + Sync,
         draw: impl Fn(&mut S, std::ops::Range<u64>) -> Vec<f64> + Sync,
+        stop: &Stop,
         mut on_progress: impl FnMut(u64),
     ) -> Self {
         /// Chunks between two reports.
@@ -113,8 +115,12 @@ impl Pool {
         for first in (0..chunks).step_by(REPORT as usize) {
             let numbers = first..(first + REPORT).min(chunks);
             let drawn = parallel::map(threads, numbers, &start, |state, chunk| {
-                draw(state, chunk * CHUNK..((chunk + 1) * CHUNK).min(samples))
+                let numbers = chunk * CHUNK..((chunk + 1) * CHUNK).min(samples);
+                if stop.is_set() { Vec::new() } else { draw(state, numbers) }
             });
+            if stop.is_set() {
+                return Self::of(Vec::new());
+            }
             weights.extend(drawn.into_iter().flatten());
             on_progress(weights.len() as u64);
         }

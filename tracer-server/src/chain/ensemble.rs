@@ -13,7 +13,7 @@ use super::{
 };
 use crate::film::Film;
 use crate::mutation::{Mixture, StrategyOptions};
-use crate::parallel;
+use crate::parallel::{self, Stop};
 use crate::scene::{RayCounts, Scene, Tracer};
 use crate::target::Target;
 
@@ -62,13 +62,14 @@ pub struct Ensemble {
     pool: Pool,
     lanes: Vec<Lane>,
     threads: usize,
-    steps: u64,
+    stop: Stop,
 }
 
 #[derive(Debug)]
 struct Lane {
     film: Film,
     chains: Vec<Chain>,
+    steps: u64,
     rays: RayCounts,
     /// The chains when the last window on them was opened.
     checkpoints: Vec<Checkpoint>,
@@ -78,20 +79,34 @@ impl Ensemble {
     /// Seeds the chains. Without light on the film there are no chains and the image stays black.
     /// `on_progress` hears the number of samples drawn for the seeds.
     pub fn new(scene: &Scene, settings: &EnsembleSettings, on_progress: impl FnMut(u64)) -> Self {
+        Self::until(&Stop::default(), scene, settings, on_progress)
+    }
+
+    /// As [`Ensemble::new`], for chains that can be told to stop: before they have seeds, there will be
+    /// none; later, some have made more steps than others.
+    pub fn until(
+        stop: &Stop,
+        scene: &Scene,
+        settings: &EnsembleSettings,
+        on_progress: impl FnMut(u64),
+    ) -> Self {
         let key = PoolKey { seed: settings.seed, number: 0 };
         let (samples, threads) = (settings.bootstrap_samples, settings.threads.max(1));
-        let pool = draw_pool(scene, (key, &Target::Whole), (samples, threads), on_progress);
+        let wanted = (key, &Target::Whole);
+        let pool = draw_pool(scene, wanted, (samples, threads), stop, on_progress);
         let camera = scene.camera();
         let pilot = PilotSettings {
             seed: settings.seed,
             threads: settings.threads,
             samples: samples.div_ceil(PILOT_SHARE),
+            stop: stop.clone(),
         };
         let Survey { mixture, prospects, .. } = survey(scene, &settings.strategies, &pilot);
         let mut lanes: Vec<Lane> = (0..LANES)
             .map(|_| Lane {
                 film: Film::new(camera.width, camera.height),
                 chains: Vec::new(),
+                steps: 0,
                 rays: RayCounts::default(),
                 checkpoints: Vec::new(),
             })
@@ -103,7 +118,7 @@ impl Ensemble {
             let chain = Chain::new(ChainId(id), settings.seed, seed, &kernel);
             lanes[id as usize % LANES].chains.push(chain);
         }
-        Self { kernel, prospects, pool, lanes, threads, steps: 0 }
+        Self { kernel, prospects, pool, lanes, threads, stop: stop.clone() }
     }
 
     /// The pool behind the seeds.
@@ -162,7 +177,7 @@ impl Ensemble {
 
     /// Steps taken by all chains together.
     pub fn steps(&self) -> u64 {
-        self.steps
+        self.lanes.iter().map(|lane| lane.steps).sum()
     }
 
     /// Has every step of every chain looked at from now on, for [`Ensemble::diagnostics`].
@@ -186,15 +201,14 @@ impl Ensemble {
     /// Every chain takes `steps` steps. With a `window`, the states that each chain passes through
     /// in its first `window` steps are returned, in the order of the lanes.
     pub fn advance(&mut self, scene: &Scene, steps: u64, window: Option<u64>) -> Vec<PathBatch> {
-        let kernel = &self.kernel;
+        let (kernel, stop) = (&*self.kernel, &self.stop);
         let mut batches: Vec<Vec<PathBatch>> = self.lanes.iter().map(|_| Vec::new()).collect();
         parallel::for_each(
             self.threads.min(LANES),
             self.lanes.iter_mut().zip(batches.iter_mut()),
             || (),
-            |(), (lane, out)| *out = lane.advance(scene, kernel, steps, window),
+            |(), (lane, out)| *out = lane.advance(scene, (kernel, stop), steps, window),
         );
-        self.steps += steps * self.chain_count() as u64;
         batches.into_iter().flatten().collect()
     }
 
@@ -208,7 +222,8 @@ impl Ensemble {
         let mut image = self.splats();
         let b = self.pool.normalization() * scene.radiance_scale();
         let pixels = scene.camera().pixel_count() as f64;
-        let factor = if self.steps == 0 { 0.0 } else { b * pixels / self.steps as f64 };
+        let steps = self.steps();
+        let factor = if steps == 0 { 0.0 } else { b * pixels / steps as f64 };
         image.scale(factor);
         image
     }
@@ -239,7 +254,7 @@ impl Lane {
     fn advance(
         &mut self,
         scene: &Scene,
-        kernel: &Kernel,
+        (kernel, stop): (&Kernel, &Stop),
         steps: u64,
         window: Option<u64>,
     ) -> Vec<PathBatch> {
@@ -257,11 +272,12 @@ impl Lane {
                     left -= 1;
                 }
             }
-            for _ in 0..left {
+            let done = stop.repeat(left, || {
                 chain.step(&scene, kernel, &mut self.film);
-            }
+            });
             chain.flush(&mut self.film);
             chain.settle();
+            self.steps += steps - left + done;
         }
         self.rays.add(&scene);
         watch.map_or_else(Vec::new, Watch::finish)

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::math::{Rng, Stream};
 use crate::mutation::{Independent, Mixture, MixtureBasis, Mutation as _, StrategyOptions};
-use crate::parallel;
+use crate::parallel::{self, Stop};
 use crate::path::{Aim, BidirectionalSampler, Draft, Path};
 use crate::scene::{RayCounts, Scene, Tracer};
 use crate::target::Base;
@@ -117,7 +117,7 @@ struct Tries {
 }
 
 /// How large the pilot is.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct PilotSettings {
     /// Number of the run; the same number finds the same.
     pub seed: u64,
@@ -125,6 +125,8 @@ pub struct PilotSettings {
     pub threads: usize,
     /// Bidirectional samples.
     pub samples: u64,
+    /// Tells it to look no further: what it has found by then is of no use.
+    pub stop: Stop,
 }
 
 /// Looks at the scene, and makes the mixture for its chains.
@@ -193,10 +195,10 @@ fn look(scene: &Scene, mixture: &Mixture, settings: &PilotSettings) -> Found {
         settings.threads,
         0..chunks,
         || Scout::new(scene, settings.seed),
-        |scout, number| scout.chunk(mixture, number),
+        |scout, number| (!settings.stop.is_set()).then(|| scout.chunk(mixture, number)),
     );
     let mut found = Found::new(scene, mixture);
-    for part in &parts {
+    for part in parts.iter().flatten() {
         found.merge(part);
     }
     found
@@ -320,7 +322,7 @@ mod tests {
     use crate::scene::fixtures::{diffuse_room, specular_room};
 
     fn settings(threads: usize) -> PilotSettings {
-        PilotSettings { seed: 3, threads, samples: 4096 }
+        PilotSettings { seed: 3, threads, samples: 4096, stop: Stop::default() }
     }
 
     #[test]

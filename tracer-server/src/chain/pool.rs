@@ -19,7 +19,9 @@ impl Pool {
     /// Of these weights.
     pub fn of(weights: Vec<f64>) -> Self {
         let mut total = Accumulator::default();
-        weights.iter().for_each(|&weight| total.add(weight));
+        for &weight in &weights {
+            total.add(weight);
+        }
         Self { weights, total }
     }
 

@@ -6,8 +6,10 @@ use anyhow::{Context as _, ensure};
 use clap::builder::RangedU64ValueParser;
 use clap::{ArgAction, Args, ValueEnum};
 
+use super::render::IntegratorName;
 use crate::chain::EnsembleSettings;
 use crate::mutation::{Form, KINDS, Kind, Mixture, Parameter, StrategyOptions};
+use crate::render::Integrator;
 use crate::scene::{Scene, StrategySetting, Wish};
 
 /// Seed, chains, threads and strategies.
@@ -178,6 +180,31 @@ pub fn of_scene(settings: &[StrategySetting]) -> anyhow::Result<StrategyOptions>
 }
 
 impl ChainArgs {
+    /// Refuses options that `integrator` would not heed.
+    pub fn check(&self, integrator: IntegratorName) -> anyhow::Result<()> {
+        let StrategyArgs { strategies, without, tune, adapt } = &self.strategies;
+        let has_chains = matches!(integrator, IntegratorName::Mlt | IntegratorName::Pssmlt);
+        let has_strategies = matches!(integrator, IntegratorName::Auto | IntegratorName::Mlt);
+        let idle: Vec<&str> = [
+            ("--chains", self.chains.is_some() && !has_chains),
+            ("--strategies", !strategies.is_empty() && !has_strategies),
+            ("--without", !without.is_empty() && !has_strategies),
+            ("--tune", !tune.is_empty() && !has_strategies),
+            ("--adapt", adapt.is_some() && !has_strategies),
+        ]
+        .into_iter()
+        .filter_map(|(option, is_idle)| is_idle.then_some(option))
+        .collect();
+        ensure!(
+            idle.is_empty(),
+            "{} would change nothing: {} has no {}; leave it out, or use --integrator mlt",
+            idle.join(", "),
+            Integrator::from(integrator).name(),
+            if has_chains { "mutation strategies" } else { "Markov chains" },
+        );
+        Ok(())
+    }
+
     /// The settings of chains whose only end is a picture: they may be many, and each short.
     pub fn for_a_picture(
         &self,

@@ -3,11 +3,12 @@
 use std::fs;
 use std::io::Read as _;
 use std::iter;
-use std::net::SocketAddr;
+use std::net::{SocketAddr, ToSocketAddrs as _};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow, ensure};
 use clap::Args;
+use host::file::{self, Place};
 
 use crate::daemon::DEFAULT_ADDRESS;
 use crate::service::{Access, Certificate, MAX_TOKEN_LENGTH, Security, Token};
@@ -19,11 +20,11 @@ const MAX_PEM_BYTES: u64 = 1 << 20;
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Connections")]
 pub struct DoorArgs {
-    /// Where to listen; port 0 takes any that is free.
+    /// Where to listen: an address or name of this machine; port 0 takes any that is free.
     ///
-    /// Other machines can connect to anything but `127.0.0.1` and `[::1]`; that asks for a token and
-    /// for encryption.
-    #[arg(long, value_name = "ADDR:PORT", default_value_t = DEFAULT_ADDRESS)]
+    /// Other machines can connect to anything but `localhost`, `127.0.0.1` and `[::1]`; that asks for a
+    /// token and for encryption.
+    #[arg(long, value_name = "HOST:PORT", default_value_t = DEFAULT_ADDRESS, value_parser = listen)]
     pub listen: SocketAddr,
     /// File with the token that viewers must show; whoever has it may steer.
     #[arg(long, value_name = "FILE")]
@@ -100,6 +101,21 @@ impl DoorArgs {
     }
 }
 
+/// An address, by itself or by its name. Of several, one of IPv4 is what viewers try first.
+fn listen(text: &str) -> Result<SocketAddr, String> {
+    if let Ok(address) = text.parse() {
+        return Ok(address);
+    }
+    let (host, port) = text.rsplit_once(':').unwrap_or_default();
+    let port: u16 = port.parse().ok().filter(|_| !host.is_empty()).ok_or_else(|| {
+        format!("write HOST:PORT, such as {DEFAULT_ADDRESS}, localhost:0 or [::1]:50061")
+    })?;
+    let found = (host, port).to_socket_addrs();
+    let found = found.map_err(|error| format!("no address is known of `{host}`: {error}"))?;
+    let first = found.min_by_key(SocketAddr::is_ipv6);
+    first.ok_or_else(|| format!("no address is known of `{host}`"))
+}
+
 fn token(file: &Path) -> anyhow::Result<Token> {
     let secret = text(file, "the token", 2 * MAX_TOKEN_LENGTH as u64)?;
     Token::new(&secret).map_err(|problem| anyhow!("{}: {problem}", file.display()))
@@ -119,16 +135,10 @@ fn text(file: &Path, what: &str, limit: u64) -> anyhow::Result<String> {
 /// Writes certificate and key; the key for its owner only.
 fn keep(certificate: &Certificate, chain: &Path, key: &Path) -> anyhow::Result<()> {
     let (chain_pem, key_pem) = certificate.pem();
-    let mut options = fs::OpenOptions::new();
-    options.write(true).create_new(true);
-    #[cfg(unix)]
-    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-    let write_key = || -> std::io::Result<()> {
-        std::io::Write::write_all(&mut options.open(key)?, key_pem.as_bytes())
-    };
-    write_key().with_context(|| format!("cannot write the key to {}", key.display()))?;
-    fs::write(chain, chain_pem)
-        .with_context(|| format!("cannot write the certificate to {}", chain.display()))
+    // Both or none: half a pair would be refused next time.
+    let chain_place = Place::find(chain)?;
+    file::write_private(key, key_pem.as_bytes())?;
+    Ok(chain_place.write_bytes(chain_pem.as_bytes()).inspect_err(|_| drop(fs::remove_file(key)))?)
 }
 
 #[cfg(test)]
@@ -159,6 +169,23 @@ mod tests {
         );
         security("--listen 0.0.0.0:0 --tls-self-signed").expect_err("without a token");
         security("--listen 0.0.0.0:0 --insecure").expect("the owner has decided");
+    }
+
+    #[test]
+    fn names_of_this_machine_are_understood() {
+        let address = |text: &str| {
+            let line = Line::try_parse_from(["serve", "--listen", text]);
+            line.map(|line| line.door.listen).map_err(|error| error.to_string())
+        };
+        let local = address("localhost:0").expect("every machine has one");
+        assert!(local.ip().is_loopback() && security("--listen localhost:0").is_ok(), "{local}");
+        assert_eq!(address("[::1]:7").expect("IPv6").port(), 7);
+        for bad in ["localhost", "50061", ":50061", "localhost:many", "127.0.0.1:99999"] {
+            let complaint = address(bad).expect_err(bad);
+            assert!(complaint.contains("HOST:PORT"), "{bad}: {complaint}");
+        }
+        let complaint = address("no such host:1").expect_err("a name that nobody can have");
+        assert!(complaint.contains("no such host"), "{complaint}");
     }
 
     #[test]

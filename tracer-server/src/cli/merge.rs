@@ -9,9 +9,10 @@ use anyhow::Context as _;
 use clap::Args;
 use comfy_table::Table;
 use comfy_table::presets::UTF8_FULL_CONDENSED;
+use host::file::Place;
 
-use crate::image_file;
-use crate::render::auto::of_part;
+use crate::image_file::Destination;
+use crate::render::auto::{of_part, planes};
 use crate::replicate::{Part, Selection};
 
 /// Adds films of replicates up: bit for bit the picture that one run would have made.
@@ -46,18 +47,13 @@ pub(super) fn read(file: &Path) -> anyhow::Result<Part> {
 /// Writes a film of replicates: beside the file, and then in its place, so that there is always a whole
 /// one.
 pub(super) fn write(file: &Path, part: &Part) -> anyhow::Result<()> {
-    let beside = file.with_extension("lvf.part");
-    let written = File::create(&beside)
-        .map_err(Into::into)
-        .and_then(|created| part.write(&created).and_then(|()| Ok(created.sync_all()?)))
-        .map_err(anyhow::Error::from)
-        .and_then(|()| Ok(std::fs::rename(&beside, file)?));
-    written.with_context(|| format!("`{}` could not be written", file.display()))
+    Place::find(file)?.write(|out| part.write(out))?;
+    Ok(())
 }
 
 /// Adds up, writes the picture and tells how far the parts disagree.
 pub fn run(args: &MergeArgs) -> anyhow::Result<ExitCode> {
-    image_file::Format::of(&args.output)?;
+    let output = Destination::find(&args.output)?;
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED).set_header([
         "film",
@@ -96,7 +92,7 @@ pub fn run(args: &MergeArgs) -> anyhow::Result<ExitCode> {
     ];
     let metadata: Vec<_> =
         metadata.into_iter().map(|(key, value)| (format!("lvis.{key}"), value)).collect();
-    image_file::write(&args.output, &image, &metadata)?;
+    output.write(&image, &planes(&ledger, scale), &metadata)?;
     if let Some(file) = &args.film_out {
         write(file, &sum)?;
     }

@@ -14,10 +14,11 @@ mod meter;
 pub mod render;
 pub mod scenes;
 pub mod serve;
+mod stopper;
 pub mod trade;
 pub mod verify;
 
-use std::io::{self, IsTerminal as _, Write as _};
+use std::io;
 use std::process::ExitCode;
 
 use anyhow::Context as _;
@@ -84,31 +85,28 @@ impl Command {
 /// Runs the program.
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
-    match log_to_stderr(&cli.log).and_then(|()| cli.command.run()) {
+    let filter = EnvFilter::builder().parse(&cli.log);
+    let filter =
+        filter.with_context(|| format!("--log or RUST_LOG: `{}` is no log filter", cli.log));
+    let (filter, ready) = match filter {
+        Ok(filter) => (filter, Ok(())),
+        Err(error) => (EnvFilter::default(), Err(error)),
+    };
+    let log = host::log::start(filter, false);
+    let code = match ready.and_then(|()| cli.command.run()) {
         Ok(code) => code,
         // Whoever reads the results, such as `head`, has read enough.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            // Without stderr, the exit code has to do.
-            drop(writeln!(io::stderr(), "error: {error:#}"));
+            log.say(&format!("error: {error:#}"));
             ExitCode::from(BAD_INPUT)
         }
-    }
+    };
+    log.finish();
+    code
 }
 
+/// True where standard output is gone. Files that cannot be written have errors of their own.
 fn is_broken_pipe(error: &anyhow::Error) -> bool {
     error.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe)
-}
-
-fn log_to_stderr(filter: &str) -> anyhow::Result<()> {
-    let filter = EnvFilter::builder()
-        .parse(filter)
-        .with_context(|| format!("--log or RUST_LOG: `{filter}` is no log filter"))?;
-    tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_writer(io::stderr)
-        .with_ansi(io::stderr().is_terminal())
-        .with_target(false)
-        .init();
-    Ok(())
 }

@@ -1,12 +1,13 @@
 //! `tracer-server serve`: the daemon.
 
-use std::io::{self, Write as _};
+use std::fmt::Write as _;
 use std::process::ExitCode;
 use std::sync::Arc;
 
 use anyhow::Context as _;
 use clap::Args;
-use tokio::signal;
+use host::Writer;
+use host::signal::Endings;
 
 use super::chains::ChainArgs;
 use super::door::DoorArgs;
@@ -15,8 +16,8 @@ use crate::daemon::{Daemon, DaemonOptions};
 
 /// Traces a scene for ever, and shows viewers how.
 ///
-/// Prints `listening on ADDR:PORT` when viewers may connect. Ctrl-C and SIGTERM end it; viewers that
-/// are connected are told.
+/// Prints `listening on ADDR:PORT` when viewers may connect. Ctrl-C, SIGTERM and the end of its terminal
+/// end it; viewers that are connected are told. Under `nohup` it outlives its terminal.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "\
 Examples:
@@ -60,47 +61,18 @@ async fn serve(
     options: &DaemonOptions,
 ) -> anyhow::Result<ExitCode> {
     // Before anyone can know that we are there, so that no signal kills us half-way.
-    let told_to_stop = told_to_stop()?;
+    let mut endings = Endings::listen().context("cannot wait for signals")?;
     let daemon = Daemon::start(scene, options)?;
-    let mut out = io::stdout().lock();
-    writeln!(out, "listening on {}", daemon.address())?;
+    let mut hello = format!("listening on {}\n", daemon.address());
     if let Some(certificate) = &options.security.certificate {
-        writeln!(out, "certificate fingerprint {}", certificate.fingerprint())?;
+        writeln!(hello, "certificate fingerprint {}", certificate.fingerprint())?;
     }
-    out.flush()?;
-    drop(out);
+    // Viewers can come whether or not anybody reads this.
+    Writer::stdout().say(hello);
     tokio::select! {
-        () = told_to_stop => {}
+        ending = endings.next() => tracing::info!("stopping: {}", ending.name()),
         () = daemon.ended().cancelled() => anyhow::bail!("the network service has ended"),
     }
-    tracing::info!("stopping");
     daemon.stop();
     Ok(ExitCode::SUCCESS)
-}
-
-/// Resolves on Ctrl-C, or on SIGTERM where there is such a thing. Listens from the moment of the
-/// call.
-#[cfg(unix)]
-fn told_to_stop() -> io::Result<impl Future<Output = ()>> {
-    use signal::unix::{SignalKind, signal};
-
-    let mut interrupt = signal(SignalKind::interrupt())?;
-    let mut terminate = signal(SignalKind::terminate())?;
-    Ok(async move {
-        tokio::select! {
-            _ = interrupt.recv() => {}
-            _ = terminate.recv() => {}
-        }
-    })
-}
-
-/// Resolves on Ctrl-C.
-#[cfg(not(unix))]
-fn told_to_stop() -> io::Result<impl Future<Output = ()>> {
-    Ok(async {
-        if signal::ctrl_c().await.is_err() {
-            // Without signals only the service itself can end.
-            std::future::pending::<()>().await;
-        }
-    })
 }

@@ -1,5 +1,6 @@
 //! `tracer-server trade`: speed against accuracy, measured.
 
+use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -12,6 +13,7 @@ use clap::{Args, Parser};
 use comfy_table::Table;
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use common::Floor;
+use host::file::{Growing, Place};
 use serde::Serialize;
 
 use super::chains::ChainArgs;
@@ -36,8 +38,8 @@ Examples:
       --setting 'all=' --setting 'plain=--without caustic,multi-chain' \\
       --setting 'space=--integrator pssmlt --primary-sampler path'
 
-Files in DIR: trade.csv (a line a run), trade.json (a record a point), trade.svg (the chart),
-reference.exr, and the first picture of every point.
+Files in DIR: trade.csv (a line a run; trade.csv.part until all have ended), trade.json (a record a
+point), trade.svg (the chart), reference.exr, and the first picture of every point.
 
 The error is the mean over the pixels of |I - R|^2 / (|R|^2 + 0.01 mean |R|^2), and \"trimmed\" leaves
 out the worst pixel in a thousand. \"bias\" is the squared systematic error as a share of the error of
@@ -169,6 +171,8 @@ impl TradeArgs {
         let mut settings: Vec<Setting> = Vec::new();
         for SettingText { name, options } in texts {
             ensure!(!settings.iter().any(|s| s.name == *name), "two settings are called `{name}`");
+            let heeded = options.chains.check(options.integrator);
+            heeded.with_context(|| format!("--setting {name}"))?;
             let ensemble = options.chains.for_a_picture(scene, wishes);
             let ensemble = ensemble.with_context(|| format!("--setting {name}"))?;
             let primary = options.primary.settings(options.integrator);
@@ -215,8 +219,11 @@ pub fn run(args: &TradeArgs) -> anyhow::Result<ExitCode> {
     let (scene, wishes) = input::scene_with_depth(&args.scene, args.film, args.max_depth)?;
     let settings = args.settings(&scene, &wishes)?;
     let budgets = args.budgets();
-    std::fs::create_dir_all(&args.out)
+    fs::create_dir_all(&args.out)
         .with_context(|| format!("the folder `{}` could not be made", args.out.display()))?;
+    let file = |name: &str| Place::find(&args.out.join(name));
+    let (json_file, chart_file) = (file("trade.json")?, file("trade.svg")?);
+    let growing = Growing::begin(file("trade.csv")?)?;
     let reference = args.reference(&scene)?;
     let plan = Plan {
         settings: &settings,
@@ -225,7 +232,7 @@ pub fn run(args: &TradeArgs) -> anyhow::Result<ExitCode> {
         reference: &reference.image,
         floor: args.floor(),
     };
-    let points = measure(&plan, &scene, &args.out.join("trade.csv"))?;
+    let points = measure(&plan, &scene, growing)?;
     let lines = summarize(&plan, &points);
     let outcome = Outcome {
         scene: scene.name(),
@@ -234,11 +241,10 @@ pub fn run(args: &TradeArgs) -> anyhow::Result<ExitCode> {
         points: &lines,
     };
     let json = serde_json::to_string_pretty(&outcome)?;
-    let file = args.out.join("trade.json");
-    std::fs::write(&file, &json)
-        .with_context(|| format!("`{}` could not be written", file.display()))?;
-    draw(&args.out.join("trade.svg"), &format!("{}: error against time", scene.name()), &lines)?;
+    json_file.write_bytes(json.as_bytes())?;
     save_pictures(&plan, &points, &args.out)?;
+    let chart = draw(&format!("{}: error against time", scene.name()), &lines)?;
+    chart_file.write_bytes(chart.as_bytes())?;
     let mut out = io::stdout().lock();
     if args.json {
         writeln!(out, "{json}")?;
@@ -259,9 +265,8 @@ struct Outcome<'a> {
 }
 
 /// Runs the plan; each run is in the file as soon as it has ended.
-fn measure(plan: &Plan<'_>, scene: &Scene, file: &Path) -> anyhow::Result<Vec<Point>> {
-    let mut csv = csv::Writer::from_path(file)
-        .with_context(|| format!("`{}` could not be written", file.display()))?;
+fn measure(plan: &Plan<'_>, scene: &Scene, file: Growing) -> anyhow::Result<Vec<Point>> {
+    let mut csv = csv::Writer::from_writer(file);
     let meter = Meter::new(format!("trade {}", scene.name()), "measured");
     let points = plan.measure(scene, |share, run: &Run| -> anyhow::Result<()> {
         csv.serialize(run)?;
@@ -270,6 +275,7 @@ fn measure(plan: &Plan<'_>, scene: &Scene, file: &Path) -> anyhow::Result<Vec<Po
         Ok(())
     })?;
     meter.finish();
+    csv.into_inner()?.finish()?;
     Ok(points)
 }
 
@@ -403,17 +409,18 @@ mod tests {
             "--height",
             "8",
             "--setting",
-            "few=--chains 8",
+            "few=--integrator mlt --chains 8",
             "--setting",
             "tracer=--integrator path",
         ]);
         run(&args.expect("valid arguments")).expect("a trade");
-        let csv = std::fs::read_to_string(out.join("trade.csv")).expect("the runs");
+        let csv = fs::read_to_string(out.join("trade.csv")).expect("the runs");
         assert_eq!(csv.lines().count(), 1 + 2 * 2 * 2, "a header, and a line a run:\n{csv}");
-        let json = std::fs::read_to_string(out.join("trade.json")).expect("the points");
+        assert!(!out.join("trade.csv.part").exists(), "nothing more is to come");
+        let json = fs::read_to_string(out.join("trade.json")).expect("the points");
         let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
         assert_eq!(json["points"].as_array().map(Vec::len), Some(4));
-        let svg = std::fs::read_to_string(out.join("trade.svg")).expect("the chart");
+        let svg = fs::read_to_string(out.join("trade.svg")).expect("the chart");
         assert!(svg.contains("few") && svg.contains("tracer"), "a legend");
         for file in ["reference.exr", "few-1.exr", "tracer-2.exr"] {
             image_file::read_exr(&out.join(file)).expect(file);

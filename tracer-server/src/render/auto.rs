@@ -5,8 +5,11 @@ use std::time::{Duration, Instant};
 use cpu_time::ProcessTime;
 
 use super::{Budget, Progress, RenderSettings, Rendering, Report, chain_report};
+use crate::image_file::Plane;
 use crate::parallel::Stop;
-use crate::replicate::{Advance, Ledger, Limits, Origin, Part, Picture, Plan, Selection, prepare};
+use crate::replicate::{
+    Advance, Ledger, Limits, Origin, Part, Picture, Plan, Selection, TILE, prepare,
+};
 use crate::scene::Scene;
 
 /// Numbers of replicates after which a picture that is to reach an error is looked at: each is about
@@ -19,6 +22,9 @@ const LOOKS: [u64; 36] = [
 /// Time between two films that are saved, in seconds.
 const SAVING: Duration = Duration::from_secs(4);
 
+/// Keeps what there is of a picture.
+pub type Save<'a> = dyn FnMut(&Part) -> anyhow::Result<()> + Send + 'a;
+
 /// What is asked for besides the settings of every picture.
 pub struct Wish<'a> {
     /// Which replicates; as many as the budget allows without.
@@ -30,7 +36,7 @@ pub struct Wish<'a> {
     /// Somebody wants it to end.
     pub stop: Stop,
     /// Who keeps the replicates there are, every few seconds and at the end.
-    pub save: Option<&'a mut (dyn FnMut(&Part) -> anyhow::Result<()> + Send)>,
+    pub save: Option<&'a mut Save<'a>>,
 }
 
 impl Wish<'_> {
@@ -79,7 +85,8 @@ pub fn render(
     let ensemble = &settings.ensemble;
     let threads = ensemble.threads.max(1);
     on_progress(Progress::Seeding(0));
-    let plan = prepare(scene, &ensemble.strategies, (ensemble.seed, threads), settings.dial);
+    let plan =
+        prepare(scene, (&ensemble.strategies, settings.dial), (ensemble.seed, threads), &wish.stop);
     let seeding_seconds = wall.elapsed().as_secs_f64();
     let mut picture = Picture::new(scene, &plan);
     let origin = origin(scene, &plan);
@@ -134,6 +141,7 @@ pub fn render(
         cpu_seconds,
         seeding_seconds,
         threads,
+        stopped: wish.stop.is_set(),
         mean: image.mean().into(),
         ..report(scene, &plan, &picture)
     };
@@ -158,7 +166,7 @@ struct Job<'a, 'w> {
     budget: Budget,
     began: Instant,
     saved: Instant,
-    save: Option<&'w mut (dyn FnMut(&Part) -> anyhow::Result<()> + Send)>,
+    save: Option<&'w mut Save<'w>>,
     trouble: Option<anyhow::Error>,
 }
 
@@ -256,6 +264,27 @@ fn report(scene: &Scene, plan: &Plan, picture: &Picture) -> Report {
     }
 }
 
+/// What is known of the errors of a picture, pixel by pixel: the standard error of its luminance, that of
+/// the mean of its tile, in radiance of the file's units, and whether the former can be trusted.
+pub fn planes(ledger: &Ledger, radiance_scale: f64) -> Vec<Plane> {
+    let scaled = |values: Vec<f32>| -> Vec<f32> {
+        values.into_iter().map(|value| (f64::from(value) * radiance_scale) as f32).collect()
+    };
+    let reliable = ledger.is_reliable().into_iter().map(|is| f32::from(u8::from(is)));
+    let (width, columns) = (ledger.width(), ledger.width().div_ceil(TILE));
+    let tiles = ledger.tile_errors();
+    let of_tile = |pixel: u32| {
+        let (x, y) = (pixel % width, pixel / width);
+        tiles[(y / TILE * columns + x / TILE) as usize]
+    };
+    let of_tiles = (0..width * ledger.height()).map(of_tile).collect();
+    vec![
+        Plane { name: "error", values: scaled(ledger.standard_errors()) },
+        Plane { name: "tile_error", values: scaled(of_tiles) },
+        Plane { name: "reliable", values: reliable.collect() },
+    ]
+}
+
 /// The picture of a film of replicates, with its report.
 pub fn of_part(part: &Part) -> (crate::film::Film, Ledger) {
     let ledger = part.ledger.clone();
@@ -267,12 +296,14 @@ pub fn of_part(part: &Part) -> (crate::film::Film, Ledger) {
 
 /// Renders with nothing wished for besides the settings.
 pub(super) fn plain(
+    stop: &Stop,
     scene: &Scene,
     settings: &RenderSettings,
     on_progress: &mut (dyn FnMut(Progress) + Send),
 ) -> Rendering {
     // Without a film to begin with or to save, nothing can go wrong.
-    render(scene, settings, Wish::none(), on_progress).unwrap_or_else(|_error| Rendering {
+    let wish = Wish { stop: stop.clone(), ..Wish::none() };
+    render(scene, settings, wish, on_progress).unwrap_or_else(|_error| Rendering {
         image: crate::film::Film::new(scene.camera().width, scene.camera().height),
         report: Report::default(),
         errors: None,

@@ -12,6 +12,7 @@ use crate::chain::{ChainStatistics, Ensemble, EnsembleSettings, Prospect};
 use crate::film::Film;
 use crate::integrator::pssmlt::{PrimaryEnsemble, PrimarySettings, STEPS};
 use crate::integrator::{BidirectionalTracer, PathTracer};
+use crate::parallel::Stop;
 use crate::path::Failure;
 use crate::replicate::{Dial, Ledger, Outlook};
 use crate::scene::{RayCounts, Scene};
@@ -125,6 +126,8 @@ pub struct Report {
     pub mean_error: Option<f64>,
     /// Kurtosis of the replicates' mean luminances: where it is large, errors are not to be trusted.
     pub mean_kurtosis: Option<f64>,
+    /// True when it was stopped before its budget was spent.
+    pub stopped: bool,
     /// Seconds of wall clock, seeding included.
     pub wall_seconds: f64,
     /// Seconds of all cores together, seeding included.
@@ -198,18 +201,30 @@ pub enum Progress {
 pub fn render(
     scene: &Scene,
     settings: &RenderSettings,
+    on_progress: impl FnMut(Progress) + Send,
+) -> Rendering {
+    render_until(&Stop::default(), scene, settings, on_progress)
+}
+
+/// Renders `scene` until the budget is spent, or until it is told to `stop`: the image is then what
+/// there is by that time, and black where not a single mutation, or sample, has been made.
+pub fn render_until(
+    stop: &Stop,
+    scene: &Scene,
+    settings: &RenderSettings,
     mut on_progress: impl FnMut(Progress) + Send,
 ) -> Rendering {
     if settings.integrator == Integrator::Auto {
-        return auto::plain(scene, settings, &mut on_progress);
+        return auto::plain(stop, scene, settings, &mut on_progress);
     }
     let (wall, cpu) = (Instant::now(), ProcessTime::now());
-    let mut work = Work::new(scene, settings, |n| on_progress(Progress::Seeding(n)));
+    let mut work = Work::new(stop, scene, settings, |n| on_progress(Progress::Seeding(n)));
     let seeding_seconds = wall.elapsed().as_secs_f64();
     let mut pace = Pace::new(&work, scene, settings.budget, wall);
     loop {
         on_progress(Progress::Rendering(pace.spent()));
-        let Some(amount) = pace.next().filter(|_| !work.is_dark()) else { break };
+        let amount = pace.next().filter(|_| !work.is_dark() && !stop.is_set());
+        let Some(amount) = amount else { break };
         work.advance(scene, amount, settings.ensemble.threads);
         pace.done(amount);
     }
@@ -228,6 +243,7 @@ pub fn render(
         max_edges: scene.max_edges(),
         threads: settings.ensemble.threads,
         mutations,
+        stopped: stop.is_set(),
         wall_seconds,
         cpu_seconds: cpu.elapsed().as_secs_f64(),
         seeding_seconds,
@@ -239,23 +255,28 @@ pub fn render(
 }
 
 impl Work {
-    fn new(scene: &Scene, settings: &RenderSettings, on_seeding: impl FnMut(u64)) -> Self {
+    fn new(
+        stop: &Stop,
+        scene: &Scene,
+        settings: &RenderSettings,
+        on_seeding: impl FnMut(u64),
+    ) -> Self {
         let seed = settings.ensemble.seed;
         match settings.integrator {
             // Pictures of replicates are made elsewhere.
             Integrator::Auto | Integrator::Mlt => {
-                Self::Mlt(Ensemble::new(scene, &settings.ensemble, on_seeding))
+                Self::Mlt(Ensemble::until(stop, scene, &settings.ensemble, on_seeding))
             }
             Integrator::Pssmlt => {
                 let settings = (&settings.ensemble, settings.primary);
-                Self::Pssmlt(PrimaryEnsemble::new(scene, settings, on_seeding))
+                Self::Pssmlt(PrimaryEnsemble::until(stop, scene, settings, on_seeding))
             }
             Integrator::Bdpt => Self::Bdpt(BidirectionalTracer::new(scene, seed)),
             Integrator::Path => Self::Path(PathTracer::new(scene, seed)),
         }
     }
 
-    /// Work that cannot be done in parts, and that makes an image: steps of all chains once, or samples.
+    /// Work that cannot be done in parts: a step of every chain, or a sample.
     fn unit(&self) -> u64 {
         self.chain_count().map_or(1, |chains| chains.max(1) as u64)
     }
@@ -387,4 +408,89 @@ fn strategy_reports(names: &[String], statistics: &ChainStatistics) -> Vec<Strat
         }
     };
     names.iter().zip(&statistics.strategies).map(report).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::fixtures::diffuse_room;
+
+    const INTEGRATORS: [Integrator; 4] =
+        [Integrator::Mlt, Integrator::Pssmlt, Integrator::Bdpt, Integrator::Path];
+
+    fn settings(integrator: Integrator, per_pixel: u64) -> RenderSettings {
+        let ensemble = EnsembleSettings {
+            chains: 32,
+            threads: 2,
+            bootstrap_samples: 1 << 14,
+            ..EnsembleSettings::default()
+        };
+        let budget = Budget::PerPixel(per_pixel);
+        let (primary, dial) = (PrimarySettings::default(), Dial::default());
+        RenderSettings { integrator, budget, ensemble, primary, dial }
+    }
+
+    #[test]
+    fn a_stopped_render_is_an_image_of_what_was_done() {
+        let scene = diffuse_room().build();
+        for integrator in INTEGRATORS {
+            let stop = Stop::default();
+            let stop_late = |at| match at {
+                Progress::Rendering(share) if share >= 0.2 => stop.set(),
+                Progress::Rendering(_) | Progress::Seeding(_) => {}
+            };
+            let Rendering { image, report, .. } =
+                render_until(&stop, &scene, &settings(integrator, 50), stop_late);
+            let name = integrator.name();
+            assert!(report.stopped, "{name}");
+            let share = report.mutations as f64 / (50 * scene.camera().pixel_count()) as f64;
+            assert!((0.19..0.3).contains(&share), "{name}: {share} of the work");
+            let whole = render(&scene, &settings(integrator, 50), |_| ());
+            assert!(!whole.report.stopped, "{name}");
+            let ratio = image.mean().luminance() / whole.image.mean().luminance();
+            assert!((ratio - 1.0).abs() < 0.1, "{name}: {ratio} of the light");
+        }
+    }
+
+    /// The luminance of an image of chains is that of their seeds, however many steps each has taken.
+    #[test]
+    fn chains_that_stop_within_a_round_count_what_they_did() {
+        let scene = diffuse_room().build();
+        for integrator in [Integrator::Mlt, Integrator::Pssmlt] {
+            let stop = Stop::default();
+            let told = stop.clone();
+            let begun = std::sync::Barrier::new(2);
+            let Rendering { image, report, .. } = std::thread::scope(|scope| {
+                scope.spawn(|| {
+                    begun.wait();
+                    std::thread::sleep(Duration::from_millis(5));
+                    told.set();
+                });
+                let mut waiting = true;
+                let on_progress = |at| match at {
+                    Progress::Rendering(_) if std::mem::take(&mut waiting) => drop(begun.wait()),
+                    Progress::Rendering(_) | Progress::Seeding(_) => {}
+                };
+                render_until(&stop, &scene, &settings(integrator, 1 << 16), on_progress)
+            });
+            assert!(report.stopped && report.mutations > 0, "{report:?}");
+            if integrator == Integrator::Mlt {
+                let ratio = image.mean().luminance() / report.normalization;
+                assert!((ratio - 1.0).abs() < 1e-9, "{ratio}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_stopped_before_it_has_seeds_has_no_image() {
+        let scene = diffuse_room().build();
+        for integrator in INTEGRATORS {
+            let stop = Stop::default();
+            stop.set();
+            let Rendering { image, report, .. } =
+                render_until(&stop, &scene, &settings(integrator, 4), |_| ());
+            assert!(report.stopped && report.mutations == 0, "{report:?}");
+            assert_eq!(image.mean(), common::Rgb::BLACK, "{}", integrator.name());
+        }
+    }
 }

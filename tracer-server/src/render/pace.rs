@@ -5,8 +5,11 @@ use std::time::{Duration, Instant};
 use super::{Budget, Work};
 use crate::scene::Scene;
 
-/// Rounds of a budget that is no time.
+/// Rounds of a budget that is no time, at least.
 const ROUNDS: u64 = 100;
+/// Mutations or samples of all pixels together in a round, about, where that is less: so often it is seen
+/// whether to stop.
+const SAMPLES: u64 = 1 << 17;
 /// Longest round under a time limit: a share of the time that is left, but never less than this.
 const SHORTEST: Duration = Duration::from_millis(20);
 /// See [`SHORTEST`].
@@ -64,7 +67,7 @@ impl Pace {
     fn next_of_total(&self) -> Option<u64> {
         let grain = self.first.max(self.unit);
         let all = self.total / grain;
-        let rounds = all.clamp(1, ROUNDS);
+        let rounds = all.clamp(1, ROUNDS).max(self.total / SAMPLES).min(all.max(1));
         let upto = |round: u64| {
             if round >= rounds {
                 self.total

@@ -130,10 +130,10 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
-        let n = values.clone().count() as f64;
-        let mean = values.clone().sum::<f64>() / n;
-        let moment = |power: i32| values.clone().map(|v| (v - mean).powi(power)).sum::<f64>();
+    fn of(values: &[f64]) -> Self {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let moment = |power: i32| values.iter().map(|v| (v - mean).powi(power)).sum::<f64>();
         let squares = moment(2);
         let kurtosis = n * moment(4) / (squares * squares);
         Self { mean, error: (squares / (n - 1.0) / n).sqrt(), kurtosis }
@@ -261,12 +261,12 @@ impl Ledger {
 
     /// Mean luminance of the picture.
     pub fn mean(&self) -> Estimate {
-        Estimate::of(self.rows.iter().map(|row| row.mean))
+        Estimate::of(&self.rows.iter().map(|row| row.mean).collect::<Vec<_>>())
     }
 
     /// `b`: what the chains have of it.
     pub fn normalization(&self) -> Estimate {
-        Estimate::of(self.rows.iter().map(|row| row.normalization))
+        Estimate::of(&self.rows.iter().map(|row| row.normalization).collect::<Vec<_>>())
     }
 
     /// Variance of the mean of a quantity with this sum and sum of squares, in quanta; NaN of a single

@@ -61,6 +61,9 @@ pub enum PartError {
     /// The file cannot be read or written.
     #[error(transparent)]
     File(#[from] io::Error),
+    /// It cannot be written.
+    #[error(transparent)]
+    Place(#[from] host::file::FileError),
     /// It is something else.
     #[error("this is no film of replicates, which `render --film-out` writes")]
     Foreign,

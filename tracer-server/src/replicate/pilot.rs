@@ -17,7 +17,7 @@ use crate::chain::{Chain, Kernel, PilotSettings, PoolKey, Sighting, Source, Surv
 use crate::film::Film;
 use crate::math::{Rng, Strata, Stream};
 use crate::mutation::StrategyOptions;
-use crate::parallel;
+use crate::parallel::{self, Stop};
 use crate::scene::{RayCounts, Scene, Tracer};
 use crate::target::{Base, Equalised, Selective, Target};
 
@@ -26,7 +26,7 @@ const SAMPLES: u64 = 4096;
 /// Tiles along each side of the coarse image.
 const TILES: usize = 12;
 /// Chains that tell how far mutations are correlated, the samples that seed them, and their steps.
-const SCOUTS: (u32, u64, usize) = (48, 1024, 400);
+const SCOUTS: (u32, u64, usize) = (64, 1024, 600);
 /// Work of a replicate, in rays: about half a second of one core.
 const REPLICATE_WORK: f64 = 4e6;
 /// Most parts of a replicate.
@@ -69,14 +69,15 @@ fn work_of_mutations(counts: RayCounts, mutations: u64) -> f64 {
     counts.rays as f64 + 0.5 * counts.shadow_rays as f64 + MUTATION * mutations as f64
 }
 
-/// Makes the plan for a scene. Without light on the film there are neither chains nor a base.
+/// Makes the plan for a scene. Without light on the film there are no chains. What it has found by the
+/// time that it is told to `stop` is of no use.
 pub fn prepare(
     scene: &Scene,
-    options: &StrategyOptions,
+    (options, dial): (&StrategyOptions, Dial),
     (seed, threads): (u64, usize),
-    dial: Dial,
+    stop: &Stop,
 ) -> Plan {
-    let settings = PilotSettings { seed, threads, samples: SAMPLES };
+    let settings = PilotSettings { seed, threads, samples: SAMPLES, stop: stop.clone() };
     let survey = survey(scene, options, &settings);
     let view = View::new(scene, survey);
     // Chains of a likely choice tell more, and may change it.
@@ -183,33 +184,29 @@ impl View {
     fn look(&self, scene: &Scene, base: Base) -> Vec<Look> {
         let tracer = Tracer::new(scene);
         let mut sampler = BaseSampler::new(&tracer, Selective { base, tau: f64::INFINITY });
-        let mut rng = Rng::new(0, Stream::Scout, u64::MAX - 1);
-        let mut looks = Vec::new();
         let camera = scene.camera();
-        for number in 0..LOOKED_AT[base as usize] {
-            let pixel = rng.below(camera.pixel_count());
-            for second in [false, true] {
-                let strata =
-                    Strata::new(0, Stream::Scout, u64::from(number) << 1 | u64::from(second));
-                for index in 0..GROUP {
-                    let pass = Pass { strata, index };
-                    sampler.look(&tracer, pass, pixel, |at, luminance, density_sum, edges| {
-                        let (x, y) = (at as u32 % camera.width, at as u32 / camera.width);
-                        let place = glam::DVec2::new(
-                            (f64::from(x) + 0.5) / f64::from(camera.width),
-                            (f64::from(y) + 0.5) / f64::from(camera.height),
-                        );
-                        looks.push(Look {
-                            place: (number, second),
-                            is_own: at == pixel,
-                            omega: self.weight_at(place),
-                            luminance,
-                            density_sum,
-                            edges,
-                        });
-                    });
-                }
-            }
+        let place = |at: usize| {
+            let (x, y) = (at as u32 % camera.width, at as u32 / camera.width);
+            glam::DVec2::new(
+                (f64::from(x) + 0.5) / f64::from(camera.width),
+                (f64::from(y) + 0.5) / f64::from(camera.height),
+            )
+        };
+        let pixel_of = |number: u32| {
+            let mut choice = Rng::new(0, Stream::Scout, 1 << 40 | u64::from(number));
+            choice.below(camera.pixel_count())
+        };
+        let groups = (0..LOOKED_AT[base as usize]).flat_map(|n| [(n, false), (n, true)]);
+        let mut looks = Vec::new();
+        for (place_of, index) in groups.flat_map(|group| (0..GROUP).map(move |i| (group, i))) {
+            let (number, second) = place_of;
+            let key = u64::from(number) << 1 | u64::from(second);
+            let pass = Pass { strata: Strata::new(0, Stream::Scout, key), index };
+            let pixel = pixel_of(number);
+            sampler.look(&tracer, pass, pixel, |at, luminance, density_sum, edges| {
+                let (is_own, omega) = (at == pixel, self.weight_at(place(at)));
+                looks.push(Look { place: place_of, is_own, omega, luminance, density_sum, edges });
+            });
         }
         looks
     }
@@ -364,9 +361,12 @@ impl View {
         if !(mutations > 0.0) {
             return guess;
         }
-        // Independent states would spread by the sum over all pixels of what one state adds.
+        // Independent states would spread by the sum over all pixels of what one state adds. Few chains
+        // that stay rule the mean: one standard error more keeps a lucky look from promising too much.
         let alone = runs.iter().map(|run| run.2).sum::<f64>();
-        let correlation = spread / alone;
+        let mean = spread / runs.len() as f64;
+        let squares = runs.iter().map(|run| (run.0 - mean).powi(2)).sum::<f64>();
+        let correlation = (spread + squares.sqrt()) / alone;
         let correlation = if correlation.is_finite() { correlation } else { guess.correlation };
         Scouting { mutation: work / mutations, correlation: correlation.clamp(0.5, 200.0) }
     }
@@ -430,24 +430,21 @@ impl View {
     fn effective_share(&self, target: &Target) -> f64 {
         let mut weights = vec![0.0; self.survey.samples as usize];
         for sighting in &self.survey.sightings {
-            weights[sighting.sample as usize] += sighting.weight * self.rho(sighting, target);
+            weights[sighting.sample as usize] += sighting.weight * rho(sighting, target);
         }
         let sum: f64 = weights.iter().sum();
         let squares: f64 = weights.iter().map(|w| w * w).sum();
         if squares > 0.0 { sum * sum / squares / weights.len() as f64 } else { 0.0 }
     }
+}
 
-    fn rho(&self, sighting: &Sighting, target: &Target) -> f64 {
-        match target {
-            Target::Whole => 1.0,
-            Target::Selective(s) => {
-                1.0 - s.base_share(sighting.density_sum(s.base), sighting.edges)
-            }
-            Target::Equalised(equalised) => {
-                equalised.at(glam::Vec2::from(sighting.film).as_dvec2())
-            }
-            Target::Product(parts) => parts.iter().map(|part| self.rho(sighting, part)).product(),
-        }
+/// `rho` of a path that was seen.
+fn rho(sighting: &Sighting, target: &Target) -> f64 {
+    match target {
+        Target::Whole => 1.0,
+        Target::Selective(s) => 1.0 - s.base_share(sighting.density_sum(s.base), sighting.edges),
+        Target::Equalised(equalised) => equalised.at(glam::Vec2::from(sighting.film).as_dvec2()),
+        Target::Product(parts) => parts.iter().map(|part| rho(sighting, part)).product(),
     }
 }
 

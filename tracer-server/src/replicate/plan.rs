@@ -92,7 +92,8 @@ impl Plan {
     /// The plan in a few words, for people.
     pub fn describe(&self) -> String {
         let Outlook { base, tau, .. } = self.outlook;
-        let base = base.map_or("no base".to_owned(), |base| format!("base {}", base.name()));
+        let base =
+            base.map_or_else(|| "no base".to_owned(), |base| format!("base {}", base.name()));
         format!(
             "seed {}; {base}, tau {tau:.4e}; {} parts of {} chains of {} steps each, pool of {}",
             self.seed, self.parts, self.chains, self.steps, self.pool

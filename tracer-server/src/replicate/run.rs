@@ -1,5 +1,6 @@
 //! Replicates on many threads.
 
+use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -9,6 +10,9 @@ use crate::chain::ChainStatistics;
 use crate::film::Film;
 use crate::parallel::{self, Stop};
 use crate::scene::{Scene, Tracer};
+
+/// How long a part may still take when the work is to stop.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A picture of replicates, finished or not.
 #[derive(Clone, Debug)]
@@ -186,9 +190,17 @@ impl<'a, 's> Worker<'a, 's> {
         let begun = Instant::now();
         let mut replicate = Replicate::begin(&self.scene, plan, number, film);
         let (pool, mut part) = (begun.elapsed(), self.part);
-        let stop = || self.limits.stop.is_set();
+        // A part that is soon done is worth waiting for.
+        let told = Cell::new(None::<Instant>);
+        let stop = || {
+            if self.limits.stop.is_set() && told.get().is_none() {
+                told.set(Some(Instant::now()));
+            }
+            told.get().is_some_and(|at| at.elapsed() > PATIENCE)
+        };
         while replicate.parts() < parts {
-            if replicate.parts() > 0 && self.is_late(part) {
+            let is_over = self.limits.stop.is_set() || self.is_late(part);
+            if replicate.parts() > 0 && is_over {
                 self.over.store(true, Ordering::Relaxed);
                 break;
             }

@@ -19,7 +19,7 @@ pub struct Selection {
 impl Selection {
     /// The first `count` replicates.
     pub fn first(count: u64) -> Self {
-        Self { whole: vec![0..count], tails: Vec::new() }
+        Self { whole: std::iter::once(0..count).collect(), tails: Vec::new() }
     }
 
     /// The selection with its open end, if it has one, at `count`.

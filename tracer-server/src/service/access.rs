@@ -4,6 +4,8 @@ use common::Role;
 use tonic::service::Interceptor;
 use tonic::{Request, Status};
 
+use super::connections::Caller;
+
 /// What comes before a token in the `authorization` entry of a request [RFC 6750].
 const SCHEME: &str = "Bearer ";
 /// Shorter tokens can be guessed.
@@ -71,13 +73,14 @@ pub(super) struct Allowed(pub(super) Role);
 
 impl Interceptor for Access {
     fn call(&mut self, mut request: Request<()>) -> Result<Request<()>, Status> {
+        let caller = Caller::of(request.extensions());
+        caller.map_or(Ok(()), Caller::check)?;
         let entry = request.metadata().get("authorization").map(|value| value.to_str());
         let presented = entry.and_then(|text| text.ok()?.strip_prefix(SCHEME));
         let Some(role) = self.role(presented) else {
             let what = if presented.is_some() { "a wrong token" } else { "no token" };
-            let peer = request
-                .remote_addr()
-                .map_or_else(|| "somebody".to_owned(), |address| address.to_string());
+            let address = caller.and_then(Caller::address);
+            let peer = address.map_or_else(|| "somebody".to_owned(), |address| address.to_string());
             tracing::warn!(peer, "refused: {what}");
             let message = format!(
                 "{what}: this daemon asks for one; start the viewer with --token-file FILE, where \

@@ -49,8 +49,6 @@ const GRACE: Duration = Duration::from_secs(2);
 const PING_INTERVAL: Duration = Duration::from_secs(5);
 /// See [`PING_INTERVAL`].
 const PING_TIMEOUT: Duration = Duration::from_secs(10);
-/// Connections at a time: viewers, tools and whoever is refused.
-const MAX_CONNECTIONS: usize = 128;
 /// Streams that one connection may have open.
 const STREAMS_PER_CONNECTION: u32 = 32;
 /// A viewer's filters are read no faster than this: compiling one takes time, which a viewer that asks
@@ -117,10 +115,13 @@ pub async fn serve(
 
     let (health_reporter, health) = tonic_health::server::health_reporter();
     health_reporter.set_serving::<TracerServer<TracerService>>().await;
-    let reflection = tonic_reflection::server::Builder::configure()
-        .register_encoded_file_descriptor_set(FILE_DESCRIPTOR_SET)
-        .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
-        .build_v1()?;
+    let reflection = || {
+        tonic_reflection::server::Builder::configure()
+            .register_encoded_file_descriptor_set(FILE_DESCRIPTOR_SET)
+            .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
+    };
+    // Many tools ask in the form that was there before the first version.
+    let (reflection, early_reflection) = (reflection().build_v1()?, reflection().build_v1alpha()?);
     let filter_scene = Arc::new(info.filter_scene());
     let (task_list, token) = (tasks.clone(), shutdown.clone());
     let house = Arc::new(House { filter_scene, steering, room: Room::new(hub.clone()) });
@@ -139,9 +140,10 @@ pub async fn serve(
         .max_concurrent_streams(Some(STREAMS_PER_CONNECTION))
         .add_service(health)
         .add_service(InterceptedService::new(reflection, security.access))
+        .add_service(InterceptedService::new(early_reflection, security.access))
         .add_service(InterceptedService::new(tracer, security.access))
         .serve_with_incoming_shutdown(
-            connections::accept(listener, MAX_CONNECTIONS),
+            connections::accept(listener),
             shutdown.clone().cancelled_owned(),
         );
     let overdue = async {

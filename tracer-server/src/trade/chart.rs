@@ -1,7 +1,6 @@
 //! The picture of error against time.
 
-use std::path::Path;
-
+use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use super::Summary;
@@ -18,17 +17,26 @@ const COLORS: [RGBColor; 7] = [
 ];
 
 /// Draws mean errors over mean CPU seconds, both logarithmic, with the span from the 10 % to the
-/// 90 % quantile, one line a setting, as an SVG.
+/// 90 % quantile, one line a setting; the answer is the text of an SVG.
 ///
 /// # Errors
 ///
-/// When there is nothing to draw, or the file cannot be written.
-pub fn draw(file: &Path, title: &str, lines: &[Summary]) -> anyhow::Result<()> {
-    let area = SVGBackend::new(file, (960, 600)).into_drawing_area();
+/// When there is nothing to draw.
+pub fn draw(title: &str, lines: &[Summary]) -> anyhow::Result<String> {
+    let mut svg = String::new();
+    draw_on(&SVGBackend::with_string(&mut svg, (960, 600)).into_drawing_area(), title, lines)?;
+    Ok(svg)
+}
+
+fn draw_on(
+    area: &DrawingArea<SVGBackend<'_>, Shift>,
+    title: &str,
+    lines: &[Summary],
+) -> anyhow::Result<()> {
     area.fill(&WHITE)?;
     let times = range(lines.iter().map(|line| line.cpu_seconds))?;
     let errors = range(lines.iter().flat_map(|line| [line.quantiles.low, line.quantiles.high]))?;
-    let mut chart = ChartBuilder::on(&area)
+    let mut chart = ChartBuilder::on(area)
         .caption(title, ("sans-serif", 22))
         .margin(16)
         .x_label_area_size(48)

@@ -16,7 +16,7 @@ pub use sampler::{PrimarySampler, Sample, Sampler, SceneSampler};
 use crate::chain::{ChainStatistics, EnsembleSettings, LANES, Pool};
 use crate::film::Film;
 use crate::math::{Rng, Stream, TorusStep};
-use crate::parallel;
+use crate::parallel::{self, Stop};
 use crate::scene::{RayCounts, Scene};
 
 /// How chains in primary-sample space are run.
@@ -41,7 +41,7 @@ pub struct PrimaryEnsemble {
     pool: Pool,
     lanes: Vec<Lane>,
     threads: usize,
-    steps: u64,
+    stop: Stop,
 }
 
 /// A film and the chains that splat into it; worked on by one thread at a time.
@@ -49,6 +49,7 @@ pub struct PrimaryEnsemble {
 struct Lane {
     film: Film,
     chains: Vec<PrimaryChain<LazyPoint<Rng>>>,
+    steps: u64,
     rays: RayCounts,
 }
 
@@ -56,6 +57,17 @@ impl PrimaryEnsemble {
     /// Seeds the chains. Without light on the film there are no chains and the image stays black.
     /// `on_progress` hears the number of samples drawn for the seeds.
     pub fn new(
+        scene: &Scene,
+        settings: (&EnsembleSettings, PrimarySettings),
+        on_progress: impl FnMut(u64),
+    ) -> Self {
+        Self::until(&Stop::default(), scene, settings, on_progress)
+    }
+
+    /// As [`PrimaryEnsemble::new`], for chains that can be told to stop: before they have seeds, there
+    /// will be none; later, some have made more steps than others.
+    pub fn until(
+        stop: &Stop,
         scene: &Scene,
         (ensemble, settings): (&EnsembleSettings, PrimarySettings),
         on_progress: impl FnMut(u64),
@@ -69,12 +81,14 @@ impl PrimaryEnsemble {
             (ensemble.bootstrap_samples, ensemble.threads),
             || (SceneSampler::new(scene, settings.sampler), Sample::default()),
             |state, numbers| numbers.map(|number| weigh(state, number)).collect(),
+            stop,
             on_progress,
         );
         let camera = scene.camera();
         let lane = || Lane {
             film: Film::new(camera.width, camera.height),
             chains: Vec::new(),
+            steps: 0,
             rays: RayCounts::default(),
         };
         let mut lanes: Vec<Lane> = (0..LANES).map(|_| lane()).collect();
@@ -91,7 +105,8 @@ impl PrimaryEnsemble {
             let chain = PrimaryChain::new(rng, (point, sample), settings.large_step);
             lanes[id as usize % LANES].chains.push(chain);
         }
-        Self { settings, pool, lanes, threads: ensemble.threads.max(1), steps: 0 }
+        let threads = ensemble.threads.max(1);
+        Self { settings, pool, lanes, threads, stop: stop.clone() }
     }
 
     /// How the chains are run.
@@ -111,27 +126,27 @@ impl PrimaryEnsemble {
 
     /// Steps taken by all chains together.
     pub fn steps(&self) -> u64 {
-        self.steps
+        self.lanes.iter().map(|lane| lane.steps).sum()
     }
 
     /// Every chain takes `steps` steps.
     pub fn advance(&mut self, scene: &Scene, steps: u64) {
         let PrimarySettings { sampler, large_step } = self.settings;
+        let stop = &self.stop;
         let balance = Balance { normalization: self.pool.normalization(), large: large_step };
         parallel::for_each(
             self.threads.min(LANES),
             self.lanes.iter_mut(),
             || (),
-            |(), lane| lane.advance(SceneSampler::new(scene, sampler), balance, steps),
+            |(), lane| lane.advance(SceneSampler::new(scene, sampler), (balance, stop), steps),
         );
-        self.steps += steps * self.chain_count() as u64;
     }
 
     /// The image in radiance of the file's units; black without steps.
     pub fn image(&self, scene: &Scene) -> Film {
         let mut image = Film::sum(self.lanes.iter().map(|lane| &lane.film));
         let pixels = scene.camera().pixel_count() as f64;
-        image.scale(scene.radiance_scale() * pixels / self.steps.max(1) as f64);
+        image.scale(scene.radiance_scale() * pixels / self.steps().max(1) as f64);
         image
     }
 
@@ -158,11 +173,14 @@ impl PrimaryEnsemble {
 }
 
 impl Lane {
-    fn advance(&mut self, mut sampler: SceneSampler<'_>, balance: Balance, steps: u64) {
+    fn advance(
+        &mut self,
+        mut sampler: SceneSampler<'_>,
+        (balance, stop): (Balance, &Stop),
+        steps: u64,
+    ) {
         for chain in &mut self.chains {
-            for _ in 0..steps {
-                chain.step(&mut sampler, balance, &mut self.film);
-            }
+            self.steps += stop.repeat(steps, || chain.step(&mut sampler, balance, &mut self.film));
             chain.flush(balance, &mut self.film);
         }
         self.rays.add(sampler.scene());
