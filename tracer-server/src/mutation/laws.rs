@@ -260,7 +260,7 @@ fn wrong_bidirectional_mutations_are_found() {
     let scene = saturated_room().build();
     let right = bidirectional(&scene);
     for mutant in mutants::of_bidirectional(right) {
-        assert_found(&mutant, &scene, Test::Steps(3), 15_000);
+        assert_found(&mutant, &scene, Test::Steps(3), 30_000);
     }
 }
 
@@ -268,7 +268,7 @@ fn wrong_bidirectional_mutations_are_found() {
 fn wrong_independent_mutations_are_found() {
     let scene = specular_room().build();
     for mutant in mutants::of_independent(&independent(&scene)) {
-        assert_found(&mutant, &scene, Test::Steps(3), 15_000);
+        assert_found(&mutant, &scene, Test::Steps(3), 30_000);
     }
 }
 
@@ -281,7 +281,7 @@ fn wrong_lens_perturbations_are_found() {
     right.radius.max = 16.0;
     for mutant in mutants::of_lens(right) {
         let scene = if mutant.needs_glass { &pane } else { &room };
-        assert_found(&mutant, scene, Test::Proposals(10), 12_000);
+        assert_found(&mutant, scene, Test::Proposals(10), 25_000);
     }
 }
 
@@ -289,12 +289,12 @@ fn wrong_lens_perturbations_are_found() {
 fn wrong_lens_subpath_mutations_are_found() {
     let scene = wall_in_a_pane().build();
     for mutant in mutants::of_lens_subpath(lens_subpath(&scene)) {
-        assert_found(&mutant, &scene, Test::Steps(3), 15_000);
+        assert_found(&mutant, &scene, Test::Steps(3), 30_000);
     }
     let scene = coated_room().build();
     let right = lens_subpath(&scene);
     let mutant = mutants::of_lens_subpath_on_coats(right);
-    assert_found(&mutant, &scene, Test::Steps(3), 30_000);
+    assert_found(&mutant, &scene, Test::Steps(3), 60_000);
 }
 
 #[test]

@@ -10,8 +10,10 @@ const ROUNDS: u64 = 100;
 /// Mutations or samples of all pixels together in a round, about, where that is less: so often it is seen
 /// whether to stop.
 const SAMPLES: u64 = 1 << 17;
-/// Longest round under a time limit: a share of the time that is left, but never less than this.
-const SHORTEST: Duration = Duration::from_millis(20);
+/// A round under a time limit takes a share of the time that is left, within these limits.
+const SHORTEST: f64 = 0.02;
+/// See [`SHORTEST`].
+const LONGEST: f64 = 0.2;
 /// See [`SHORTEST`].
 const SHARE: f64 = 0.25;
 
@@ -48,6 +50,9 @@ impl Pace {
 
     /// Share of the budget that is spent, from 0 to 1.
     pub(super) fn spent(&self) -> f64 {
+        if self.done == 0 {
+            return 0.0;
+        }
         let spent = match self.budget {
             Budget::PerPixel(_) => self.done as f64 / self.total.max(1) as f64,
             Budget::Time(limit) => self.began.elapsed().as_secs_f64() / limit.as_secs_f64(),
@@ -86,7 +91,7 @@ impl Pace {
         }
         let left = limit.saturating_sub(self.began.elapsed()).as_secs_f64();
         let speed = self.done as f64 / self.seeded.elapsed().as_secs_f64().max(1e-9);
-        let time = left.min((left * SHARE).max(SHORTEST.as_secs_f64()));
+        let time = left.min((left * SHARE).clamp(SHORTEST, LONGEST));
         let mut amount = (speed * time) as u64 / self.unit * self.unit;
         if amount > self.first {
             // Whole passes, while there is time for some.
