@@ -8,8 +8,8 @@ use std::io::{self, Write as _};
 use std::time::Instant;
 
 use common::{
-    BatchBuilder, BatchLimits, ChainId, CompiledFilter, Event, Filter, FilterScene, PathBatch,
-    PathHeader, PathId, SceneFrame, VertexKind, VertexRecord,
+    BatchBuilder, BatchLimits, ChainId, CompiledFilter, Event, Filter, FilterMaterial, FilterScene,
+    PathBatch, PathHeader, PathId, SceneFrame, VertexKind, VertexRecord,
 };
 use glam::DVec3;
 
@@ -34,8 +34,7 @@ fn main() -> io::Result<()> {
     let batch = paths();
     let scene = FilterScene {
         frame: SceneFrame { centre: DVec3::ZERO, scale: 1.0, light: 1.0 },
-        materials: ["wall", "glass", "lamp"].map(str::to_owned).to_vec(),
-        background: None,
+        materials: ["wall", "glass", "lamp"].map(FilterMaterial::from).to_vec(),
         strategies: Vec::new(),
         objects: Vec::new(),
     };

@@ -26,10 +26,13 @@ pub use color::Rgb;
 pub use detail::{DetailReply, PathDetail, VertexDetail};
 pub use diagnostics::{Diagnostics, TileGrid, TileMaps, UNKNOWN};
 pub use event::{Event, VertexKind};
+pub use filter::condition;
 pub use filter::{
-    Attribute, Comparison, CompiledFilter, Filter, FilterCounts, FilterError, FilterObject,
-    FilterScene, FilterTally, Leaf, LightPathExpression, MAX_FILTER_BYTES, MAX_LEAVES, Name, Named,
-    NearestMiss, Place, Selector, SelectorKind, Shortfall, VertexClass, VertexTest, Volume,
+    Attribute, Choice, CompiledFilter, Completion, Described, FilmCondition, Filter, FilterCounts,
+    FilterError, FilterMaterial, FilterObject, FilterScene, FilterTally, FilterText, Form, Leaf,
+    LightPathExpression, MAX_FILTER_BYTES, MAX_LEAVES, Name, NameList, NearestMiss, NumberPart,
+    Place, Proposal, Selector, SelectorKind, Shortfall, Spot, Stop, Tree, Unit, VertexCheck,
+    VertexTest, Volume, Walk, Word, Worded, complete, is_same_strategy,
 };
 pub use id::{ChainId, MaterialId, NoPathId, PathId, StrategyId};
 pub use mesh::{MaterialInfo, SceneFrame, SceneMesh, TexturePreview};

@@ -112,13 +112,7 @@ async fn filter_scene(viewer: &mut Viewer) -> FilterScene {
         assembler.push(chunk).expect("well-formed");
     }
     let scene = assembler.finish().expect("whole").expect("new to us");
-    FilterScene {
-        frame: scene.frame,
-        background: FilterScene::background_among(&scene.mesh.materials),
-        materials: scene.mesh.materials.into_iter().map(|material| material.name).collect(),
-        strategies: welcome.strategies,
-        objects: Vec::new(),
-    }
+    FilterScene::new(scene.frame, &scene.mesh, welcome.strategies)
 }
 
 fn compiled(text: &str, scene: &FilterScene) -> CompiledFilter {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use std::{fs, io};
 
-use common::Filter;
+use common::FilterText;
 use serde_json::{Value, json};
 
 use crate::command::{MOST_KEPT, PanelName, kept_name};
@@ -109,8 +109,8 @@ impl Habits {
                 "closed": closed,
             })
         });
-        let filters = self.filters.iter().map(|KeptFilter { name, text, inverted, .. }| {
-            json!({ "name": name, "text": text, "inverted": inverted })
+        let filters = self.filters.iter().map(|kept| {
+            json!({ "name": kept.name, "text": kept.text().text(), "inverted": kept.inverted })
         });
         let filters: Vec<Value> = filters.collect();
         json!({ "recent": self.recent, "filters": filters, "layout": layout })
@@ -225,14 +225,14 @@ fn choice<T: Copy + Default + ToString>(all: &[T], value: &Value) -> T {
     all.iter().copied().find(|choice| choice.to_string() == text).unwrap_or_default()
 }
 
-/// The kept filters of a file; those that cannot be read are left out.
+/// The kept filters of a file. One that cannot be read is kept as it is: another version may read it.
 fn filters(value: &Value) -> Vec<KeptFilter> {
     let list = value.as_array().map(Vec::as_slice).unwrap_or_default();
     let read = list.iter().filter_map(|entry| {
         let name = kept_name(entry["name"].as_str()?)?;
-        let text = entry["text"].as_str().filter(|text| Filter::parse(text).is_ok())?.to_owned();
+        let text = FilterText::read(entry["text"].as_str()?);
         let inverted = entry["inverted"].as_bool().unwrap_or(false);
-        Some(KeptFilter { name, text, on: false, inverted })
+        Some(KeptFilter::new(name, text, inverted))
     });
     read.take(MOST_KEPT).collect()
 }
@@ -257,13 +257,12 @@ mod tests {
         ] {
             layout.apply(command);
         }
-        let kept = KeptFilter {
-            name: "my caustics".to_owned(),
-            text: "lpe \"C.*DS+L\"".to_owned(),
-            on: false,
-            inverted: true,
-        };
-        let filters = vec![kept];
+        let caustics = FilterText::read("lpe \"C.*DS+L\"");
+        let newer = FilterText::read("what only a newer version reads");
+        let filters = vec![
+            KeptFilter::new("my caustics".to_owned(), caustics, true),
+            KeptFilter::new("newer".to_owned(), newer, false),
+        ];
         let mut habits = Habits { filters, layout: Some(layout), ..Habits::default() };
         for i in 0..20 {
             habits.note(&format!("127.0.0.1:{i}"));
@@ -314,7 +313,7 @@ mod tests {
             "{\"recent\": 7, \"layout\": {\"dark\": 1}}",
             "{",
             "null",
-            "{\"filters\": [{\"name\": \"x\", \"text\": \"edges >\"}, 7]}",
+            "{\"filters\": [{\"name\": \"x\"}, {\"text\": \"\"}, 7]}",
         ] {
             fs::write(&file, text).expect("a file is written");
             assert_eq!(Habits::load(&file), Habits::default(), "`{text}`");

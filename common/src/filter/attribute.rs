@@ -1,98 +1,57 @@
-//! Numbers that a path can be asked for.
+//! Numbers that a path can be asked for. To add one: its word and an arm in each `match` below.
 
+use crate::filter::condition::number::Comparison;
+use crate::filter::form::words;
+use crate::filter::volume::point;
 use crate::{Event, PathHeader, SceneFrame, VertexKind, VertexRecord};
-use glam::Vec3;
 
-/// A number that belongs to a path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Attribute {
-    /// Edges from the light to the camera; 1 is a lamp seen directly.
-    Edges,
-    /// Length of the polyline, in the file's units.
-    Length,
-    /// The path's value to a bidirectional path tracer: `1 / S(x)`, in luminance of the image.
-    Luminance,
-    /// Acceptance probability of the mutation that made the path.
-    Acceptance,
-    /// Steps that the chain stayed here while it was watched.
-    Dwell,
-    /// Index of the chain.
-    Chain,
-    /// The time between two changes of the chain's settings or seed.
-    Epoch,
-    /// The step of the epoch whose acceptance made the path.
-    Step,
-    /// Vertices that scatter diffusely.
-    Diffuse,
-    /// Vertices that scatter glossily.
-    Glossy,
-    /// Mirror reflections and smooth refractions.
-    Specular,
-}
-
-/// How a number compares.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Comparison {
-    /// `==`.
-    Equal,
-    /// `!=`.
-    NotEqual,
-    /// `<`.
-    Less,
-    /// `<=`.
-    AtMost,
-    /// `>`.
-    Greater,
-    /// `>=`.
-    AtLeast,
+words! {
+    /// A number that belongs to a path.
+    pub enum Attribute: "The number that is asked for" {
+        Edges = "edges" or "depth", "edges from the light to the camera; 1 is a lamp seen directly";
+        Length = "length", "length of the line, in the units of the scene file";
+        Luminance = "luminance", "luminance that the path carries, in the unit of the image";
+        Acceptance = "acceptance", "probability with which the path was accepted";
+        Dwell = "dwell", "steps that the chain stayed while it was watched";
+        Chain = "chain", "number of the chain";
+        Epoch = "epoch", "number of the time between two changes of the chain's settings or seed";
+        Step = "step", "step of the epoch at which the path was accepted";
+        Diffuse = "diffuse", "vertices that scatter diffusely";
+        Glossy = "glossy", "vertices that scatter glossily";
+        Specular = "specular", "vertices on mirrors and clear glass";
+    }
 }
 
 impl Attribute {
-    /// All of them.
-    pub const ALL: [Self; 11] = [
-        Self::Edges,
-        Self::Length,
-        Self::Luminance,
-        Self::Acceptance,
-        Self::Dwell,
-        Self::Chain,
-        Self::Epoch,
-        Self::Step,
-        Self::Diffuse,
-        Self::Glossy,
-        Self::Specular,
-    ];
-
-    /// All of them, with their names and what else they are called.
-    pub(super) const NAMES: [(Self, &'static str, Option<&'static str>); 11] = [
-        (Self::Edges, "edges", Some("depth")),
-        (Self::Length, "length", None),
-        (Self::Luminance, "luminance", None),
-        (Self::Acceptance, "acceptance", None),
-        (Self::Dwell, "dwell", None),
-        (Self::Chain, "chain", None),
-        (Self::Epoch, "epoch", None),
-        (Self::Step, "step", None),
-        (Self::Diffuse, "diffuse", None),
-        (Self::Glossy, "glossy", None),
-        (Self::Specular, "specular", None),
-    ];
-
-    /// The attribute called `name`.
-    pub fn named(name: &str) -> Option<Self> {
-        let found = Self::NAMES.iter().find(|(_, own, other)| *own == name || *other == Some(name));
-        found.map(|&(attribute, ..)| attribute)
-    }
-
-    /// Its name in a filter's text.
-    pub fn name(self) -> &'static str {
-        let found = Self::NAMES.iter().find(|(attribute, ..)| *attribute == self);
-        found.map_or("edges", |&(_, name, _)| name)
-    }
-
     /// True where every value is a whole number.
     pub fn is_whole(self) -> bool {
-        !matches!(self, Self::Length | Self::Luminance | Self::Acceptance)
+        match self {
+            Self::Length | Self::Luminance | Self::Acceptance => false,
+            Self::Edges
+            | Self::Dwell
+            | Self::Chain
+            | Self::Epoch
+            | Self::Step
+            | Self::Diffuse
+            | Self::Glossy
+            | Self::Specular => true,
+        }
+    }
+
+    /// What is usually asked of it.
+    pub(super) fn usual(self) -> (Comparison, f64) {
+        match self {
+            Self::Edges => (Comparison::AtLeast, 3.0),
+            Self::Acceptance => (Comparison::AtMost, 0.1),
+            Self::Dwell => (Comparison::AtLeast, 100.0),
+            Self::Chain | Self::Epoch => (Comparison::Equal, 0.0),
+            Self::Length
+            | Self::Luminance
+            | Self::Step
+            | Self::Diffuse
+            | Self::Glossy
+            | Self::Specular => (Comparison::AtLeast, 1.0),
+        }
     }
 
     /// By how much a number that travels is larger than in the units of the file.
@@ -100,7 +59,15 @@ impl Attribute {
         match self {
             Self::Length => frame.scale,
             Self::Luminance => frame.light.recip(),
-            _ => 1.0,
+            Self::Edges
+            | Self::Acceptance
+            | Self::Dwell
+            | Self::Chain
+            | Self::Epoch
+            | Self::Step
+            | Self::Diffuse
+            | Self::Glossy
+            | Self::Specular => 1.0,
         }
     }
 
@@ -124,13 +91,13 @@ impl Attribute {
     }
 
     /// `value` as precise as the attribute is: what travels in single precision compares in it.
+    #[inline]
     pub(super) fn rounded(self, value: f64) -> f64 {
         if self.is_whole() { value } else { f64::from(value as f32) }
     }
 }
 
 fn length(path: &[VertexRecord]) -> f64 {
-    let point = |v: &VertexRecord| Vec3::from_array(v.position).as_dvec3();
     path.windows(2).map(|pair| (point(&pair[1]) - point(&pair[0])).length()).sum()
 }
 
@@ -154,40 +121,5 @@ pub(super) fn is_light(vertex: &VertexRecord) -> bool {
     match vertex.kind {
         VertexKind::Light => true,
         VertexKind::Diffuse | VertexKind::Specular | VertexKind::Eye => false,
-    }
-}
-
-impl Comparison {
-    /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::AtLeast, Self::AtMost, Self::Equal, Self::Greater, Self::Less, Self::NotEqual];
-
-    /// All of them, with their signs; a sign stands before those that it begins with.
-    pub(super) const SIGNS: [(Self, &'static str); 6] = [
-        (Self::Equal, "=="),
-        (Self::NotEqual, "!="),
-        (Self::AtMost, "<="),
-        (Self::AtLeast, ">="),
-        (Self::Less, "<"),
-        (Self::Greater, ">"),
-    ];
-
-    /// Its sign in a filter's text.
-    pub fn sign(self) -> &'static str {
-        let found = Self::SIGNS.iter().find(|(comparison, _)| *comparison == self);
-        found.map_or("==", |&(_, sign)| sign)
-    }
-
-    /// Whether `a` compares so to `b`.
-    #[inline]
-    pub(super) fn holds(self, a: f64, b: f64) -> bool {
-        match self {
-            Self::Equal => a == b,
-            Self::NotEqual => a != b,
-            Self::Less => a < b,
-            Self::AtMost => a <= b,
-            Self::Greater => a > b,
-            Self::AtLeast => a >= b,
-        }
     }
 }

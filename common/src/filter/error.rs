@@ -19,10 +19,9 @@ impl FilterError {
         Self { span, message: message.into() }
     }
 
-    /// The same complaint about a text that stands `offset` bytes into a longer one.
-    pub(super) fn shifted(mut self, offset: usize) -> Self {
-        self.span = self.span.start + offset..self.span.end + offset;
-        self
+    /// A complaint about a tree that no text could have made, so that it has no place.
+    pub(super) fn of_tree(message: impl Into<String>) -> Self {
+        Self::new(0..0, message)
     }
 
     /// The complaint under the line of `text` that it is about, with a mark below the fault.
@@ -36,4 +35,13 @@ impl FilterError {
         let mark = "^".repeat(marked.chars().count().max(1));
         format!("{line}\n{indent}{mark}\n{}", self.message)
     }
+}
+
+/// The one of `known` words that may have been meant by `found`.
+pub(super) fn closest<'a>(found: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    /// Two words of at least this Jaro-Winkler similarity may have been mixed up.
+    const SIMILAR: f64 = 0.75;
+    let likeness = |known: &str| strsim::jaro_winkler(known, found);
+    let best = known.max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
+    (likeness(best) >= SIMILAR).then_some(best)
 }

@@ -1,17 +1,14 @@
 //! How near paths came to being wanted, where none was.
 
-use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::compile::{CompiledFilter, CompiledLeaf, CompiledTest, Node, point};
-use super::{Attribute, Comparison, Place, Volume};
+use super::condition::Gap;
+use super::{CompiledFilter, Tree};
 use crate::{PathHeader, PathId, VertexRecord};
 
 /// How far a condition counts that has no measure, such as a name: as far as a region misses by its
 /// own size, or a number by itself.
 const UNMEASURED: f64 = 1.0;
-/// Steps of the search for the point of a segment that is nearest to a box; each leaves two thirds.
-const SEARCH: usize = 48;
 
 /// The path that came nearest to being wanted, and what it lacks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -94,216 +91,70 @@ impl Judged<'_> {
     }
 
     /// By how much the path misses a condition that it should meet.
-    fn gap(&self, leaf: usize) -> Option<f64> {
-        let gap = self.filter.leaves.get(leaf)?.gap(self.header, self.path, self.filter.scale)?;
-        gap.is_finite().then_some(gap)
+    fn gap(&self, leaf: usize) -> Option<Gap> {
+        let gap = self.filter.leaves.get(leaf)?.gap(self.header, self.path)?;
+        (gap.by.is_finite() && gap.relative.is_finite()).then_some(gap)
     }
 
     /// What is missing for `node` to be `wanted`, true or false.
-    fn lack(&self, node: &Node, wanted: bool) -> Lack {
+    fn lack(&self, node: &Tree<usize>, wanted: bool) -> Lack {
         match node {
-            Node::Constant(value) if *value == wanted => Lack::NONE,
-            Node::Constant(_) => Lack::HOPELESS,
-            Node::Not(part) => self.lack(part, !wanted),
-            Node::And(parts) if wanted => self.all(parts, wanted),
-            Node::Or(parts) if !wanted => self.all(parts, wanted),
-            Node::And(parts) | Node::Or(parts) => {
+            Tree::Constant(value) if *value == wanted => Lack::NONE,
+            Tree::Constant(_) => Lack::HOPELESS,
+            Tree::Not(part) => self.lack(part, !wanted),
+            Tree::And(parts) if wanted => self.all(parts, wanted),
+            Tree::Or(parts) if !wanted => self.all(parts, wanted),
+            Tree::And(parts) | Tree::Or(parts) => {
                 self.nearest(parts, wanted).map_or(Lack::HOPELESS, |(_, lack)| lack)
             }
-            Node::Leaf(leaf) if self.holds(*leaf) == wanted => Lack { asked: 1, ..Lack::NONE },
-            Node::Leaf(leaf) => {
+            Tree::Leaf(leaf) if self.holds(*leaf) == wanted => Lack { asked: 1, ..Lack::NONE },
+            Tree::Leaf(leaf) => {
                 let gap = if wanted { self.gap(*leaf) } else { None };
-                let reach = self.filter.leaves.get(*leaf).map_or(1.0, CompiledLeaf::reach);
-                let distance =
-                    gap.map_or(UNMEASURED, |gap| gap * self.filter.scale_of(*leaf) / reach);
+                let distance = gap.map_or(UNMEASURED, |gap| gap.relative);
                 Lack { missing: 1, distance, asked: 1 }
             }
         }
     }
 
-    fn all(&self, parts: &[Node], wanted: bool) -> Lack {
+    fn all(&self, parts: &[Tree<usize>], wanted: bool) -> Lack {
         parts.iter().fold(Lack::NONE, |sum, part| sum.and(self.lack(part, wanted)))
     }
 
     /// The part that misses least, of which one is enough.
-    fn nearest<'n>(&self, parts: &'n [Node], wanted: bool) -> Option<(&'n Node, Lack)> {
+    fn nearest<'n>(
+        &self,
+        parts: &'n [Tree<usize>],
+        wanted: bool,
+    ) -> Option<(&'n Tree<usize>, Lack)> {
         let lacks = parts.iter().map(|part| (part, self.lack(part, wanted)));
         lacks.reduce(|best, other| if other.1.is_less_than(best.1) { other } else { best })
     }
 
     /// The conditions that [`Self::lack`] counts as missing.
-    fn collect(&self, node: &Node, wanted: bool, failed: &mut Vec<Shortfall>) {
+    fn collect(&self, node: &Tree<usize>, wanted: bool, failed: &mut Vec<Shortfall>) {
         match node {
-            Node::Constant(_) => {}
-            Node::Not(part) => self.collect(part, !wanted, failed),
-            Node::And(parts) if wanted => {
+            Tree::Constant(_) => {}
+            Tree::Not(part) => self.collect(part, !wanted, failed),
+            Tree::And(parts) if wanted => {
                 for part in parts {
                     self.collect(part, wanted, failed);
                 }
             }
-            Node::Or(parts) if !wanted => {
+            Tree::Or(parts) if !wanted => {
                 for part in parts {
                     self.collect(part, wanted, failed);
                 }
             }
-            Node::And(parts) | Node::Or(parts) => {
+            Tree::And(parts) | Tree::Or(parts) => {
                 if let Some((part, _)) = self.nearest(parts, wanted) {
                     self.collect(part, wanted, failed);
                 }
             }
-            Node::Leaf(leaf) if self.holds(*leaf) == wanted => {}
-            Node::Leaf(leaf) => {
+            Tree::Leaf(leaf) if self.holds(*leaf) == wanted => {}
+            Tree::Leaf(leaf) => {
                 let by = if wanted { self.gap(*leaf) } else { None };
-                failed.push(Shortfall { condition: *leaf as u32, by });
+                failed.push(Shortfall { condition: *leaf as u32, by: by.map(|gap| gap.by) });
             }
         }
-    }
-}
-
-impl CompiledFilter {
-    /// What turns a gap of a condition back into the unit of its [`CompiledLeaf::reach`].
-    fn scale_of(&self, leaf: usize) -> f64 {
-        match self.leaves.get(leaf) {
-            Some(CompiledLeaf::Vertex { .. } | CompiledLeaf::Segment { .. }) => self.scale,
-            _ => 1.0,
-        }
-    }
-}
-
-impl CompiledLeaf {
-    /// By how much a path misses the condition: lengths in the file's units, `scale` of which make
-    /// one of the file.
-    fn gap(&self, header: &PathHeader, path: &[VertexRecord], scale: f64) -> Option<f64> {
-        match self {
-            Self::Vertex { place, test } => {
-                let inner = path.get(1..path.len().saturating_sub(1)).unwrap_or_default();
-                let gap = |vertex: &VertexRecord| test.gap(vertex);
-                let gap = match place {
-                    Place::Start => path.first().and_then(gap),
-                    Place::End => path.last().and_then(gap),
-                    Place::Any => least(path.iter().map(gap)),
-                    Place::All => most(inner.iter().map(gap)),
-                };
-                gap.map(|gap| gap / scale)
-            }
-            Self::Segment { place, volume } => {
-                let gap = |pair: &[VertexRecord]| match pair {
-                    [a, b] => Some(volume.distance_to_segment(point(a), point(b))),
-                    _ => None,
-                };
-                let mut pairs = path.windows(2);
-                let gap = match place {
-                    Place::Start => pairs.next().and_then(gap),
-                    Place::End => pairs.next_back().and_then(gap),
-                    Place::Any => least(pairs.map(gap)),
-                    Place::All => most(pairs.map(gap)),
-                };
-                gap.map(|gap| gap / scale)
-            }
-            Self::Film { min, max } => {
-                let outside = |i: usize| outside(header.film[i], min[i], max[i]);
-                Some(f64::from(outside(0).hypot(outside(1))))
-            }
-            Self::Number { attribute, scale, comparison, value } => match comparison {
-                Comparison::NotEqual => None,
-                _ => Some((attribute.value(header, path, *scale) - value).abs()),
-            },
-            Self::Range { attribute, scale, least, most } => {
-                let own = attribute.value(header, path, *scale);
-                Some((least - own).max(own - most).max(0.0))
-            }
-            Self::LightPath(_) | Self::Strategy(_) => None,
-        }
-    }
-
-    /// What a gap of one is worth: the size of a region in scene units, or of a number.
-    fn reach(&self) -> f64 {
-        match self {
-            Self::Vertex { test, .. } => test.reach().unwrap_or(1.0),
-            Self::Segment { volume, .. } => volume.reach(),
-            Self::Number { attribute, value, .. } => reach_of(*attribute, *value),
-            Self::Range { attribute, least, .. } => reach_of(*attribute, *least),
-            Self::Film { .. } | Self::LightPath(_) | Self::Strategy(_) => 1.0,
-        }
-    }
-}
-
-/// How much of a number is much.
-fn reach_of(attribute: Attribute, value: f64) -> f64 {
-    let least = if attribute.is_whole() { 1.0 } else { f64::MIN_POSITIVE };
-    value.abs().max(least)
-}
-
-/// The least of the gaps that can be measured.
-fn least(gaps: impl Iterator<Item = Option<f64>>) -> Option<f64> {
-    gaps.flatten().reduce(f64::min)
-}
-
-/// The largest of the gaps, all of which must be measured.
-fn most(gaps: impl Iterator<Item = Option<f64>>) -> Option<f64> {
-    gaps.reduce(|a, b| Some(a?.max(b?))).flatten()
-}
-
-/// How far a number lies outside a range.
-fn outside(x: f32, min: f32, max: f32) -> f32 {
-    (min - x).max(x - max).max(0.0)
-}
-
-impl CompiledTest {
-    /// How far a vertex is from where the test holds, in scene units; `None` without a measure.
-    fn gap(&self, vertex: &VertexRecord) -> Option<f64> {
-        if self.holds(vertex) {
-            return Some(0.0);
-        }
-        match self {
-            Self::Inside(volume) => Some(volume.distance(point(vertex))),
-            Self::And(parts) => most(parts.iter().map(|part| part.gap(vertex))),
-            Self::Or(parts) => least(parts.iter().map(|part| part.gap(vertex))),
-            _ => None,
-        }
-    }
-
-    /// The size of the first region that it names.
-    fn reach(&self) -> Option<f64> {
-        match self {
-            Self::Inside(volume) => Some(volume.reach()),
-            Self::And(parts) | Self::Or(parts) => parts.iter().find_map(Self::reach),
-            _ => None,
-        }
-    }
-}
-
-impl Volume {
-    /// How far outside `point` lies; zero inside.
-    fn distance(&self, point: DVec3) -> f64 {
-        match *self {
-            Self::Sphere { centre, radius } => ((point - centre).length() - radius).max(0.0),
-            Self::Box { min, max } => (point - point.clamp(min, max)).length(),
-        }
-    }
-
-    /// How far the segment from `a` to `b` passes by; zero where it meets the region. The distance to
-    /// a convex region is convex along the segment, so that a search by thirds finds the least.
-    fn distance_to_segment(&self, a: DVec3, b: DVec3) -> f64 {
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..SEARCH {
-            let third = (high - low) / 3.0;
-            let [left, right] = [low + third, high - third];
-            if self.distance(a.lerp(b, left)) <= self.distance(a.lerp(b, right)) {
-                high = right;
-            } else {
-                low = left;
-            }
-        }
-        self.distance(a.lerp(b, 0.5 * (low + high)))
-    }
-
-    /// Its size: a radius, or half of a box's diagonal.
-    fn reach(&self) -> f64 {
-        let reach = match *self {
-            Self::Sphere { radius, .. } => radius,
-            Self::Box { min, max } => 0.5 * (max - min).length(),
-        };
-        reach.max(f64::MIN_POSITIVE)
     }
 }

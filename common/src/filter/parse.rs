@@ -1,292 +1,299 @@
-//! The text of a filter.
+//! The grammar of filters: trees of what describes itself, names and texts in quotes.
 
-use std::str::FromStr;
+use std::ops::Range;
 
-use glam::DVec3;
-use winnow::stream::Stream as _;
+use super::form::{Described, Form, NameList, NumberPart, Stop, Walk, Word};
+use super::reader::{Reader, in_word};
+use super::{LightPathExpression, Name, Tree, VertexTest};
 
-use super::number::number;
-use super::syntax::{
-    Input, Parsed, accept, accept_word, deeper, expected, parse_all, peek_word, position, require,
-    rest, skip_blanks, take_run, wrong,
-};
-use super::{
-    Attribute, Comparison, Filter, FilterError, Leaf, LightPathExpression, Name, Named, Place,
-    VertexClass, VertexTest, Volume,
-};
+const NOT: Word = Word { text: "not", also: &["!"], meaning: "the opposite" };
+const AND: Word = Word { text: "and", also: &["&&", "&"], meaning: "both" };
+const OR: Word = Word { text: "or", also: &["||", "|"], meaning: "either" };
+const CLOSE: Word = Word::new(")", "closes");
+const COMMA: Word = Word::new(",", "and another one");
 
-/// A filter's text is no longer than this.
-pub const MAX_FILTER_BYTES: usize = 4096;
+/// What stands at the leaves of a tree that is read.
+pub(super) trait Leaves: Described + Sized {
+    /// Something to read each kind of leaf into, with an example of its text.
+    fn kinds() -> impl Iterator<Item = (Self, &'static str)>;
 
-const CONDITION: &str = "a condition such as `any in sphere(0, 1, 0, 0.5)`, `lpe \"CS+DL\"`, \
-                         `edges >= 4` or `strategy == lens`";
-const VERTEX: &str = "`in sphere(...)`, `in box(...)`, `on material \"...\"`, `is specular` or \
-                      `through sphere(...)`";
-
-impl FromStr for Filter {
-    type Err = FilterError;
-
-    fn from_str(text: &str) -> Result<Self, FilterError> {
-        Self::parse(text)
+    /// What a leaf is, where none of them begins as the text goes on; nothing where their first words
+    /// are told.
+    fn summary() -> Option<String> {
+        None
     }
 }
 
-impl Filter {
-    /// Parses a filter's text; a blank one wants every path.
-    pub fn parse(text: &str) -> Result<Self, FilterError> {
-        if text.len() > MAX_FILTER_BYTES {
-            let message = format!("a filter has at most {MAX_FILTER_BYTES} bytes; shorten it");
-            return Err(FilterError::new(MAX_FILTER_BYTES..text.len(), message));
+impl Reader<'_> {
+    /// A tree: its loosest operator first.
+    pub(super) fn tree<T: Leaves>(&mut self) -> Result<Tree<T>, Stop> {
+        self.joined(&OR, Tree::Or, |reader| reader.joined(&AND, Tree::And, Self::part))
+    }
+
+    /// One part, or several with an operator between them.
+    fn joined<T>(
+        &mut self,
+        operator: &Word,
+        join: impl Fn(Vec<Tree<T>>) -> Tree<T>,
+        read: impl Fn(&mut Self) -> Result<Tree<T>, Stop>,
+    ) -> Result<Tree<T>, Stop> {
+        let mut parts = vec![read(self)?];
+        while self.accept_word(operator) {
+            parts.push(read(self)?);
         }
-        if text.trim().is_empty() {
-            return Ok(Self::default());
-        }
-        parse_all(text, either, "`and`, `or` or the end of the filter")
+        self.expect(format!("`{}`", operator.text));
+        Ok(if parts.len() == 1 { parts.remove(0) } else { join(parts) })
     }
-}
 
-/// Takes one of several spellings of an operator.
-fn operator(input: &mut Input<'_>, word: &str, signs: [&str; 2]) -> bool {
-    accept_word(input, word) || signs.iter().any(|sign| accept(input, sign))
-}
-
-const OR: (&str, [&str; 2]) = ("or", ["||", "|"]);
-const AND: (&str, [&str; 2]) = ("and", ["&&", "&"]);
-
-/// One part, or several with an operator between them.
-fn joined<T>(
-    input: &mut Input<'_>,
-    part: impl Fn(&mut Input<'_>) -> Parsed<T>,
-    (word, signs): (&str, [&str; 2]),
-    join: impl Fn(Vec<T>) -> T,
-) -> Parsed<T> {
-    let mut parts = vec![part(input)?];
-    while operator(input, word, signs) {
-        parts.push(part(input)?);
-    }
-    Ok(if parts.len() == 1 { parts.remove(0) } else { join(parts) })
-}
-
-fn either(input: &mut Input<'_>) -> Parsed<Filter> {
-    joined(input, both, OR, Filter::Or)
-}
-
-fn both(input: &mut Input<'_>) -> Parsed<Filter> {
-    joined(input, negation, AND, Filter::And)
-}
-
-fn negation(input: &mut Input<'_>) -> Parsed<Filter> {
-    if accept_word(input, "not") || accept(input, "!") {
-        return Ok(Filter::Not(Box::new(deeper(input, negation)?)));
-    }
-    if accept(input, "(") {
-        let filter = deeper(input, either)?;
-        require(input, ")", "`and`, `or`, or `)` to close the parenthesis")?;
-        return Ok(filter);
-    }
-    condition(input)
-}
-
-fn condition(input: &mut Input<'_>) -> Parsed<Filter> {
-    let word = peek_word(input);
-    if let Some(&(place, _)) = Place::NAMES.iter().find(|(_, name)| *name == word) {
-        input.next_slice(word.len());
-        return located(input, place).map(Filter::Leaf);
-    }
-    if let Some(attribute) = Attribute::named(word) {
-        input.next_slice(word.len());
-        return comparison(input, attribute).map(Filter::Leaf);
-    }
-    let read: fn(&mut Input<'_>) -> Parsed<Filter> = match word {
-        "true" => |_| Ok(Filter::Constant(true)),
-        "false" => |_| Ok(Filter::Constant(false)),
-        "lpe" => light_path,
-        "film" => film,
-        "strategy" => strategy,
-        _ => return Err(expected(input, CONDITION)),
-    };
-    input.next_slice(word.len());
-    read(input)
-}
-
-/// What follows `start`, `end`, `any` or `all`.
-fn located(input: &mut Input<'_>, place: Place) -> Parsed<Leaf> {
-    if accept_word(input, "through") {
-        return Ok(Leaf::Segment { place, volume: volume(input)? });
-    }
-    Ok(Leaf::Vertex { place, test: vertex_negation(input)? })
-}
-
-fn vertex_either(input: &mut Input<'_>) -> Parsed<VertexTest> {
-    joined(input, vertex_both, OR, VertexTest::Or)
-}
-
-fn vertex_both(input: &mut Input<'_>) -> Parsed<VertexTest> {
-    joined(input, vertex_negation, AND, VertexTest::And)
-}
-
-fn vertex_negation(input: &mut Input<'_>) -> Parsed<VertexTest> {
-    if accept_word(input, "not") || accept(input, "!") {
-        return Ok(VertexTest::Not(Box::new(deeper(input, vertex_negation)?)));
-    }
-    if accept(input, "(") {
-        let test = deeper(input, vertex_either)?;
-        require(input, ")", "`and`, `or`, or `)` to close the parenthesis")?;
-        return Ok(test);
-    }
-    if accept_word(input, "in") {
-        return volume(input).map(VertexTest::Inside);
-    }
-    if accept_word(input, "on") {
-        let kind = one_of(input, &Named::NAMES, "`object`, `material` or `light`")?;
-        return Ok(VertexTest::On(kind, name(input)?));
-    }
-    if accept_word(input, "is") {
-        let what = "`diffuse`, `glossy`, `specular`, `reflect`, `refract`, `light` or `camera`";
-        return one_of(input, &VertexClass::NAMES, what).map(VertexTest::Is);
-    }
-    Err(expected(input, VERTEX))
-}
-
-/// One of the words of a table.
-fn one_of<T: Copy>(input: &mut Input<'_>, names: &[(T, &str)], what: &str) -> Parsed<T> {
-    let word = peek_word(input);
-    match names.iter().find(|(_, name)| *name == word) {
-        Some(&(value, _)) => {
-            input.next_slice(word.len());
-            Ok(value)
-        }
-        None => Err(expected(input, what)),
-    }
-}
-
-fn volume(input: &mut Input<'_>) -> Parsed<Volume> {
-    skip_blanks(input);
-    let start = position(input);
-    let volume = if accept_word(input, "sphere") {
-        let [x, y, z, radius] = numbers(input, "`sphere(x, y, z, radius)`")?;
-        Volume::Sphere { centre: DVec3::new(x, y, z), radius }
-    } else if accept_word(input, "box") {
-        let [x0, y0, z0, x1, y1, z1] = numbers(input, "`box(x0, y0, z0, x1, y1, z1)`")?;
-        Volume::Box { min: DVec3::new(x0, y0, z0), max: DVec3::new(x1, y1, z1) }
-    } else {
-        let what = "`sphere(x, y, z, radius)` or `box(x0, y0, z0, x1, y1, z1)`";
-        return Err(expected(input, what));
-    };
-    match volume.complaint() {
-        Some(complaint) => wrong(start, input, complaint),
-        None => Ok(volume),
-    }
-}
-
-/// `N` numbers in parentheses, separated by commas.
-fn numbers<const N: usize>(input: &mut Input<'_>, form: &str) -> Parsed<[f64; N]> {
-    let mut values = [0.0; N];
-    require(input, "(", &format!("`(` as in {form}"))?;
-    for (i, value) in values.iter_mut().enumerate() {
-        if i > 0 {
-            require(input, ",", &format!("`,` and another number as in {form}"))?;
-        }
-        *value = number(input, &format!("a number as in {form}"))?;
-    }
-    require(input, ")", &format!("`)` as in {form}"))?;
-    Ok(values)
-}
-
-fn light_path(input: &mut Input<'_>) -> Parsed<Filter> {
-    skip_blanks(input);
-    let start = position(input) + 1;
-    let text = quoted(input, "a light path expression in quotes, such as `lpe \"CS+DL\"`")?;
-    match LightPathExpression::parse(&text) {
-        Ok(expression) => Ok(Filter::Leaf(Leaf::LightPath(expression.moved(start)))),
-        Err(error) => Err(winnow::error::ErrMode::Cut(error.shifted(start))),
-    }
-}
-
-fn film(input: &mut Input<'_>) -> Parsed<Filter> {
-    const FORM: &str = "`film in rect(u0, v0, u1, v1)`";
-    if !accept_word(input, "in") || !accept_word(input, "rect") {
-        return Err(expected(input, &format!("a rectangle as in {FORM}")));
-    }
-    let start = position(input);
-    let [u0, v0, u1, v1] = numbers(input, FORM)?;
-    if !(u0 <= u1 && v0 <= v1) {
-        let message = "a rectangle is written left, top, right, bottom; film points lie in 0 to 1";
-        return wrong(start, input, message);
-    }
-    Ok(Filter::Leaf(Leaf::Film { min: [u0, v0], max: [u1, v1] }))
-}
-
-fn comparison(input: &mut Input<'_>, attribute: Attribute) -> Parsed<Leaf> {
-    if accept_word(input, "in") {
-        skip_blanks(input);
-        let start = position(input);
-        let least = number(input, "a range such as `3..6`")?;
-        require(input, "..", "`..` and the range's largest value, as in `3..6`")?;
-        let most = number(input, "the range's largest value, as in `3..6`")?;
-        if least > most {
-            return wrong(start, input, "the range is empty; write the smaller number first");
-        }
-        return Ok(Leaf::Range { attribute, least, most });
-    }
-    let found = Comparison::SIGNS.iter().find(|(_, sign)| accept(input, sign));
-    let comparison = match found {
-        Some(&(comparison, _)) => comparison,
-        None if accept(input, "=") => Comparison::Equal,
-        None => return Err(expected(input, "`==`, `!=`, `<`, `<=`, `>`, `>=` or `in`")),
-    };
-    let value = number(input, "a number to compare with")?;
-    Ok(Leaf::Number { attribute, comparison, value })
-}
-
-fn strategy(input: &mut Input<'_>) -> Parsed<Filter> {
-    if accept(input, "!=") {
-        let leaf = Leaf::Strategy(vec![name(input)?]);
-        return Ok(Filter::Not(Box::new(Filter::Leaf(leaf))));
-    }
-    if accept(input, "==") || accept(input, "=") {
-        return Ok(Filter::Leaf(Leaf::Strategy(vec![name(input)?])));
-    }
-    const FORM: &str = "`strategy == lens` or `strategy in (lens, caustic)`";
-    if !accept_word(input, "in") {
-        return Err(expected(input, FORM));
-    }
-    require(input, "(", FORM)?;
-    let mut names = vec![name(input)?];
-    while accept(input, ",") {
-        names.push(name(input)?);
-    }
-    require(input, ")", "`,` and another strategy, or `)`")?;
-    Ok(Filter::Leaf(Leaf::Strategy(names)))
-}
-
-/// A name, in quotes or as a bare word.
-fn name(input: &mut Input<'_>) -> Parsed<Name> {
-    skip_blanks(input);
-    let offset = position(input);
-    let word = take_run(input, |c| c.is_alphanumeric() || matches!(c, '_' | '-'));
-    if !word.is_empty() {
-        return Ok(Name { text: word.to_owned(), offset });
-    }
-    Ok(Name { text: quoted(input, "a name such as `lens` or `\"blue wall\"`")?, offset })
-}
-
-/// A text in double quotes, in which `\"` and `\\` stand for the second sign.
-fn quoted(input: &mut Input<'_>, what: &str) -> Parsed<String> {
-    require(input, "\"", what)?;
-    let start = position(input) - 1;
-    let mut text = String::new();
-    let mut signs = rest(input).char_indices();
-    while let Some((i, sign)) = signs.next() {
-        match sign {
-            '"' => {
-                input.next_slice(i + 1);
-                return Ok(text);
+    /// A leaf, a negation or a group.
+    fn part<T: Leaves>(&mut self) -> Result<Tree<T>, Stop> {
+        self.skip_blanks();
+        let start = self.position();
+        for (text, value) in [("true", true), ("false", false)] {
+            if self.accept(text) {
+                return Ok(Tree::Constant(value));
             }
-            '\\' => text.extend(signs.next().map(|(_, escaped)| escaped)),
-            _ => text.push(sign),
+        }
+        for (mut leaf, example) in T::kinds() {
+            if self.attempt(example, |reader| leaf.describe(reader))? {
+                return Ok(Tree::Leaf(leaf));
+            }
+        }
+        if self.accept_word(&NOT) {
+            let part = self.deeper(Self::part)?;
+            return Ok(Tree::Not(Box::new(part)));
+        }
+        if self.accept("(") {
+            return self.group();
+        }
+        for what in ["`not`", "`(`"] {
+            self.expect(what.to_owned());
+        }
+        if let Some(summary) = T::summary() {
+            self.summarise(start, summary);
+        }
+        Err(Stop)
+    }
+
+    /// What follows an opening parenthesis.
+    fn group<T: Leaves>(&mut self) -> Result<Tree<T>, Stop> {
+        let tree = self.deeper(Self::tree)?;
+        if self.accept_word(&CLOSE) {
+            return Ok(tree);
+        }
+        self.expect("`)`".to_owned());
+        Err(Stop)
+    }
+
+    /// A name, bare or in quotes.
+    fn any_name(&mut self, list: NameList) -> Result<Name, Stop> {
+        self.skip_blanks();
+        self.offer_names(list, |name| Name::from(name).to_string());
+        let offset = self.position();
+        let word = self.run(|c| in_word(c) || c == '-');
+        if !word.is_empty() {
+            return Ok(Name { text: word.to_owned(), offset });
+        }
+        if !self.rest().starts_with('"') {
+            let kind = list.kind();
+            self.expect(format!("the name of a {kind}, such as `name` or `\"a name\"`"));
+            return Err(Stop);
+        }
+        let quoted = self.quoted()?;
+        if quoted.is_closed { Ok(Name { text: quoted.text, offset }) } else { self.unfinished() }
+    }
+
+    /// A text in double quotes, in which `\"` and `\\` stand for the second sign; the quote comes next.
+    fn quoted(&mut self) -> Result<Quoted, Stop> {
+        let quote = self.position();
+        self.letter();
+        let mut quoted = Quoted {
+            text: String::new(),
+            start: self.position(),
+            escapes: Vec::new(),
+            is_closed: false,
+        };
+        loop {
+            match self.letter() {
+                Some('"') => {
+                    quoted.is_closed = true;
+                    return Ok(quoted);
+                }
+                Some('\\') => {
+                    quoted.escapes.push(quoted.text.len());
+                    quoted.text.extend(self.letter());
+                }
+                Some(letter) => quoted.text.push(letter),
+                None if self.is_offering() => return Ok(quoted),
+                None => {
+                    let message = "this quote is never closed; put another `\"` at its end";
+                    return self.wrong(quote, message);
+                }
+            }
         }
     }
-    let message = "this quote is never closed; put another `\"` at its end";
-    wrong(start, input, message)
+
+    /// The text ends within quotes, where somebody wants to know what may come there.
+    fn unfinished<T>(&mut self) -> Result<T, Stop> {
+        self.wrong(self.position(), "this quote is not closed yet")
+    }
+}
+
+/// The content of quotes, and where in the text it stands.
+#[derive(Debug)]
+pub(super) struct Quoted {
+    pub(super) text: String,
+    /// Bytes of the outer text before the content.
+    start: usize,
+    /// Bytes of the content before each sign that has a `\` in front of it.
+    escapes: Vec<usize>,
+    /// The second quote is there, as it is unless somebody wants to know what may come before it.
+    is_closed: bool,
+}
+
+impl Quoted {
+    /// The place in the outer text of a place in the content.
+    pub(super) fn outer(&self, place: usize) -> usize {
+        let escapes = self.escapes.iter().filter(|escape| **escape < place).count();
+        self.start + place + escapes
+    }
+
+    /// The part of the outer text that a part of the content stands for.
+    pub(super) fn outer_range(&self, part: Range<usize>) -> Range<usize> {
+        self.outer(part.start)..self.outer(part.end)
+    }
+}
+
+impl Form for Reader<'_> {
+    fn word(&mut self, word: &'static Word) -> Walk {
+        if self.accept_word(word) {
+            return Ok(());
+        }
+        self.expect(format!("`{}`", word.text));
+        Err(Stop)
+    }
+
+    fn sign(&mut self, sign: &'static str, meaning: &'static str) -> Walk {
+        self.offer_sign(sign, meaning);
+        let sign = sign.trim();
+        if self.accept(sign) {
+            return Ok(());
+        }
+        self.expect(format!("`{sign}`"));
+        Err(Stop)
+    }
+
+    fn choice(&mut self, _: &'static str, words: &[Word], chosen: &mut usize) -> Walk {
+        self.offer_words(words);
+        let spellings = |word: &Word| std::iter::once(word.text).chain(word.also.iter().copied());
+        let coming = words.iter().enumerate().flat_map(|(number, word)| {
+            let coming = spellings(word).filter(|text| self.comes(text));
+            coming.map(move |text| (text, number)).collect::<Vec<_>>()
+        });
+        // Of `>` and `>=` the longer one is meant.
+        if let Some((text, number)) = coming.max_by_key(|(text, _)| text.len()) {
+            self.accept(text);
+            *chosen = number;
+            return Ok(());
+        }
+        for word in words {
+            self.expect(format!("`{}`", word.text));
+        }
+        Err(Stop)
+    }
+
+    fn number(&mut self, about: &NumberPart, value: &mut f64) -> Walk {
+        self.skip_blanks();
+        self.leave_open();
+        let start = self.position();
+        let text = self.bytes(number_length);
+        if text.is_empty() {
+            self.expect(format!("a number ({})", about.about));
+            return Err(Stop);
+        }
+        match text.parse::<f64>() {
+            Ok(number) if number.is_finite() => {
+                *value = number;
+                Ok(())
+            }
+            _ => self.wrong(start, "this number is too large; write one of at most 1e308"),
+        }
+    }
+
+    fn name(&mut self, list: NameList, name: &mut Name) -> Walk {
+        *name = self.any_name(list)?;
+        Ok(())
+    }
+
+    fn names(&mut self, list: NameList, names: &mut Vec<Name>) -> Walk {
+        names.clear();
+        loop {
+            names.push(self.any_name(list)?);
+            if !self.accept_word(&COMMA) {
+                self.expect("`,`".to_owned());
+                return Ok(());
+            }
+        }
+    }
+
+    fn expression(&mut self, expression: &mut LightPathExpression) -> Walk {
+        self.offer_sign(" \"", "from the camera C or the light L");
+        if !self.rest().starts_with('"') {
+            self.expect("an expression in quotes".to_owned());
+            return Err(Stop);
+        }
+        let quoted = self.quoted()?;
+        if !quoted.is_closed {
+            self.offer_in_expression(&quoted);
+            return self.unfinished();
+        }
+        match LightPathExpression::parse(&quoted.text) {
+            Ok(read) => {
+                *expression = read.placed(&quoted);
+                Ok(())
+            }
+            Err(mut error) => {
+                error.span = quoted.outer_range(error.span);
+                self.fail(error)
+            }
+        }
+    }
+
+    fn vertex(&mut self, test: &mut VertexTest) -> Walk {
+        *test = self.part()?;
+        Ok(())
+    }
+
+    fn mark(&self) -> usize {
+        self.next_place()
+    }
+
+    fn check(&mut self, since: usize, complaint: Option<&'static str>) -> Walk {
+        match complaint {
+            Some(complaint) => self.wrong(since, complaint),
+            None => Ok(()),
+        }
+    }
+}
+
+/// How many bytes at the beginning of `text` are a number as people write them.
+fn number_length(text: &str) -> usize {
+    let digits = |from: usize| text[from..].bytes().take_while(u8::is_ascii_digit).count();
+    let signed = |from: usize| from + usize::from(text[from..].starts_with(['+', '-']));
+    let start = signed(0);
+    let whole = digits(start);
+    let mut end = start + whole;
+    if text[end..].starts_with('.') {
+        let fraction = digits(end + 1);
+        end += if fraction > 0 { 1 + fraction } else { 0 };
+    }
+    if end == start {
+        return 0;
+    }
+    if text[end..].starts_with(['e', 'E']) {
+        let first = signed(end + 1);
+        let exponent = digits(first);
+        end = if exponent > 0 { first + exponent } else { end };
+    }
+    end
 }

@@ -2,63 +2,36 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::number::Exact;
-use super::{Filter, Leaf, Name, Named, Place, VertexClass, VertexTest, Volume};
+use super::form::{Described, Form, NameList, NumberPart, Walk, Word};
+use super::{LightPathExpression, Name, Tree, VertexTest};
 
-impl Display for Filter {
+impl<T: Described + Clone> Display for Tree<T> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
             Self::Constant(value) => write!(f, "{value}"),
             Self::Not(part) => {
                 f.write_str("not ")?;
-                grouped(f, part.as_ref(), part.is_compound())
+                grouped(f, part, part.is_group())
             }
-            Self::And(parts) => joined(f, parts, "and", "true", Self::is_compound),
-            Self::Or(parts) => joined(f, parts, "or", "false", |part| matches!(part, Self::Or(_))),
-            Self::Leaf(leaf) => leaf.fmt(f),
+            Self::And(parts) => joined(f, parts, ["and", "true"], Self::is_group),
+            Self::Or(parts) => {
+                joined(f, parts, ["or", "false"], |part| matches!(part, Self::Or(_)))
+            }
+            Self::Leaf(leaf) => f.write_str(&text_of(leaf)),
         }
     }
 }
 
-impl Filter {
-    fn is_compound(&self) -> bool {
-        matches!(self, Self::And(_) | Self::Or(_))
-    }
-}
-
-impl Display for VertexTest {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Inside(volume) => write!(f, "in {volume}"),
-            Self::On(kind, name) => write!(f, "on {} {name}", word(&Named::NAMES, kind)),
-            Self::Is(class) => write!(f, "is {}", word(&VertexClass::NAMES, class)),
-            Self::Not(part) => {
-                f.write_str("not ")?;
-                grouped(f, part.as_ref(), part.is_compound())
-            }
-            Self::And(parts) => joined(f, parts, "and", "", Self::is_compound),
-            Self::Or(parts) => joined(f, parts, "or", "", |part| matches!(part, Self::Or(_))),
-        }
-    }
-}
-
-impl VertexTest {
-    fn is_compound(&self) -> bool {
-        matches!(self, Self::And(_) | Self::Or(_))
-    }
-}
-
-/// `part`, in parentheses where it is compound.
-fn grouped(f: &mut Formatter<'_>, part: &impl Display, compound: bool) -> fmt::Result {
-    if compound { write!(f, "({part})") } else { part.fmt(f) }
+/// `part`, in parentheses where it needs them.
+fn grouped(f: &mut Formatter<'_>, part: &impl Display, needs: bool) -> fmt::Result {
+    if needs { write!(f, "({part})") } else { part.fmt(f) }
 }
 
 /// The parts with an operator between them; `empty` where there are none.
 fn joined<T: Display>(
     f: &mut Formatter<'_>,
     parts: &[T],
-    operator: &str,
-    empty: &str,
+    [operator, empty]: [&str; 2],
     is_grouped: fn(&T) -> bool,
 ) -> fmt::Result {
     if parts.is_empty() {
@@ -73,71 +46,95 @@ fn joined<T: Display>(
     Ok(())
 }
 
-/// The word for `value` in a table.
-fn word<T: PartialEq>(names: &[(T, &'static str)], value: &T) -> &'static str {
-    names.iter().find(|(known, _)| known == value).map_or("", |&(_, word)| word)
+/// The text of something that describes itself.
+pub(super) fn text_of(described: &(impl Described + Clone)) -> String {
+    let mut printer = Printer { text: String::new(), tight: true };
+    let walked = described.clone().describe(&mut printer);
+    debug_assert_eq!(walked, Ok(()), "nothing stops whoever prints");
+    printer.text
 }
 
-impl Display for Leaf {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Vertex { place, test } => {
-                write!(f, "{place} ")?;
-                grouped(f, test, test.is_compound())
-            }
-            Self::Segment { place, volume } => write!(f, "{place} through {volume}"),
-            Self::LightPath(expression) => write!(f, "lpe {}", Quoted(expression.text())),
-            Self::Film { min: [u0, v0], max: [u1, v1] } => {
-                write!(
-                    f,
-                    "film in rect({}, {}, {}, {})",
-                    Exact(*u0),
-                    Exact(*v0),
-                    Exact(*u1),
-                    Exact(*v1)
-                )
-            }
-            Self::Number { attribute, comparison, value } => {
-                write!(f, "{} {} {}", attribute.name(), comparison.sign(), Exact(*value))
-            }
-            Self::Range { attribute, least, most } => {
-                write!(f, "{} in {}..{}", attribute.name(), Exact(*least), Exact(*most))
-            }
-            Self::Strategy(names) => match names.as_slice() {
-                [name] => write!(f, "strategy == {name}"),
-                names => {
-                    f.write_str("strategy in (")?;
-                    joined(f, names, ",", "", |_| false)?;
-                    f.write_str(")")
-                }
-            },
+/// Prints what is described.
+#[derive(Debug)]
+struct Printer {
+    text: String,
+    /// No blank belongs before what comes next.
+    tight: bool,
+}
+
+impl Printer {
+    fn put(&mut self, part: impl Display) {
+        if !self.tight {
+            self.text.push(' ');
         }
+        self.text.push_str(&part.to_string());
+        self.tight = false;
     }
 }
 
-impl Display for Place {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.write_str(word(&Self::NAMES, self))
+impl Form for Printer {
+    fn word(&mut self, word: &'static Word) -> Walk {
+        self.put(word.text);
+        Ok(())
+    }
+
+    fn sign(&mut self, sign: &'static str, _: &'static str) -> Walk {
+        self.text.push_str(sign);
+        self.tight = true;
+        Ok(())
+    }
+
+    fn choice(&mut self, _: &'static str, words: &[Word], chosen: &mut usize) -> Walk {
+        self.put(words.get(*chosen).map_or("", |word| word.text));
+        Ok(())
+    }
+
+    fn number(&mut self, _: &NumberPart, value: &mut f64) -> Walk {
+        self.put(Exact(*value));
+        Ok(())
+    }
+
+    fn name(&mut self, _: NameList, name: &mut Name) -> Walk {
+        self.put(name);
+        Ok(())
+    }
+
+    fn names(&mut self, _: NameList, names: &mut Vec<Name>) -> Walk {
+        let texts: Vec<String> = names.iter().map(ToString::to_string).collect();
+        self.put(texts.join(", "));
+        Ok(())
+    }
+
+    fn expression(&mut self, expression: &mut LightPathExpression) -> Walk {
+        self.put(Quoted(expression.text()));
+        Ok(())
+    }
+
+    fn vertex(&mut self, test: &mut VertexTest) -> Walk {
+        if test.is_group() {
+            self.put(format_args!("({test})"));
+        } else {
+            self.put(test);
+        }
+        Ok(())
+    }
+
+    fn check(&mut self, _: usize, _: Option<&'static str>) -> Walk {
+        Ok(())
     }
 }
 
-impl Display for Volume {
+/// A finite number as the text that reads back as the same one.
+#[derive(Debug)]
+struct Exact(f64);
+
+impl Display for Exact {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Sphere { centre: c, radius } => {
-                write!(
-                    f,
-                    "sphere({}, {}, {}, {})",
-                    Exact(c.x),
-                    Exact(c.y),
-                    Exact(c.z),
-                    Exact(*radius)
-                )
-            }
-            Self::Box { min, max } => {
-                write!(f, "box({}, {}, {}, ", Exact(min.x), Exact(min.y), Exact(min.z))?;
-                write!(f, "{}, {}, {})", Exact(max.x), Exact(max.y), Exact(max.z))
-            }
+        let size = self.0.abs();
+        if size == 0.0 || (1e-5..1e15).contains(&size) {
+            write!(f, "{}", self.0)
+        } else {
+            write!(f, "{:e}", self.0)
         }
     }
 }
@@ -149,17 +146,23 @@ impl Display for Name {
 }
 
 /// A text in double quotes.
-struct Quoted<'a>(&'a str);
+#[derive(Debug)]
+pub(super) struct Quoted<'a>(pub(super) &'a str);
 
 impl Display for Quoted<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.write_str("\"")?;
-        for part in self.0.split_inclusive(['"', '\\']) {
-            match part.strip_suffix(['"', '\\']) {
-                Some(before) => write!(f, "{before}\\{}", &part[before.len()..])?,
-                None => f.write_str(part)?,
-            }
-        }
-        f.write_str("\"")
+        write!(f, "\"{}\"", escaped(self.0, '"'))
     }
+}
+
+/// A text that may stand within quotes of a kind.
+pub(super) fn escaped(text: &str, quote: char) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for sign in text.chars() {
+        if sign == quote || sign == '\\' {
+            escaped.push('\\');
+        }
+        escaped.push(sign);
+    }
+    escaped
 }

@@ -1,6 +1,8 @@
 //! Selectors as a viewer shows them: regions of four kinds.
 
-use super::{Filter, Leaf, Place, VertexTest, Volume};
+use super::condition::segment::SegmentCondition;
+use super::condition::vertex::{VertexCheck, VertexCondition};
+use super::{Filter, Leaf, Place, Tree, Volume};
 
 /// How selectors of a kind combine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,9 +42,10 @@ impl Selector {
             SelectorKind::Any | SelectorKind::All => Place::Any,
         };
         Filter::Leaf(if self.by_segment {
-            Leaf::Segment { place, volume: self.volume }
+            Leaf::Segments(SegmentCondition { place, volume: self.volume })
         } else {
-            Leaf::Vertex { place, test: VertexTest::Inside(self.volume) }
+            let test = Tree::Leaf(VertexCheck::Inside(self.volume));
+            Leaf::Vertices(VertexCondition { place, test })
         })
     }
 }
@@ -60,11 +63,6 @@ impl Filter {
                 _ => Some(Self::Or(parts)),
             }
         });
-        let mut groups: Vec<Self> = groups.collect();
-        match groups.len() {
-            0 => Self::Constant(true),
-            1 => groups.remove(0),
-            _ => Self::And(groups),
-        }
+        Self::all_of(groups.collect())
     }
 }

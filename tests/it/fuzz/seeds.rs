@@ -2,10 +2,11 @@
 
 use common::{
     Appearance, Attendee, Author, ChainCommand, ChainId, ChainState, Event, ExplorerCommand,
-    ExplorerState, FailureCount, FilmTile, FilterCounts, FilterError, FilterObject, FilterReply,
-    FilterScene, FocusOutcome, FocusPath, FocusStep, Gap, Gaze, LeaseEvent, LeaseNotice,
-    LeaseRequest, Notice, Order, OrderReply, PathHeader, PathId, Presence, Role, SceneFrame, Seed,
-    SkipTo, Statistics, StrategyId, StrategySet, StrategyStatistics, VertexKind, VertexRecord,
+    ExplorerState, FailureCount, FilmTile, FilterCounts, FilterError, FilterMaterial, FilterObject,
+    FilterReply, FilterScene, FocusOutcome, FocusPath, FocusStep, Gap, Gaze, LeaseEvent,
+    LeaseNotice, LeaseRequest, Notice, Order, OrderReply, PathHeader, PathId, Presence, Role,
+    SceneFrame, Seed, SkipTo, Statistics, StrategyId, StrategySet, StrategyStatistics, VertexKind,
+    VertexRecord,
 };
 use glam::DVec3;
 use proto::{Hello, NumberedOrder, ProtocolVersion, TracerEvent, ViewerEvent, WantedFilter};
@@ -168,8 +169,7 @@ pub(super) fn filter_scene() -> FilterScene {
     let names = |all: &[&str]| all.iter().map(|&name| name.to_owned()).collect();
     FilterScene {
         frame: SceneFrame { centre: DVec3::new(0.5, 0.0, 1.0), scale: 0.25, light: 1.0 },
-        materials: names(&["glass", "floor", "lamp"]),
-        background: None,
+        materials: ["glass", "floor", "lamp"].map(FilterMaterial::from).to_vec(),
         strategies: names(&["bidirectional", "lens", "caustic"]),
         objects: vec![FilterObject { name: "vase".to_owned(), primitives: 1..3 }],
     }

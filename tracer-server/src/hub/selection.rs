@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use common::{
-    BatchBuilder, BatchLimits, ChainId, Event, Filter, FilterScene, PathHeader, PathId, SceneFrame,
-    VertexKind, VertexRecord,
+    BatchBuilder, BatchLimits, ChainId, Event, Filter, FilterMaterial, FilterScene, PathHeader,
+    PathId, SceneFrame, VertexKind, VertexRecord,
 };
 use proptest::prelude::*;
 
@@ -74,8 +74,7 @@ impl Walk {
 fn compiled(text: &str) -> Arc<CompiledFilter> {
     let scene = FilterScene {
         frame: SceneFrame { centre: glam::DVec3::ZERO, scale: 1.0, light: 1.0 },
-        materials: vec!["even".to_owned(), "odd".to_owned()],
-        background: None,
+        materials: ["even", "odd"].map(FilterMaterial::from).to_vec(),
         strategies: Vec::new(),
         objects: Vec::new(),
     };

@@ -69,14 +69,7 @@ pub struct SessionInfo {
 impl SessionInfo {
     /// What filters may name.
     fn filter_scene(&self) -> FilterScene {
-        let materials = &self.mesh.materials;
-        FilterScene {
-            frame: self.welcome.frame,
-            materials: materials.iter().map(|material| material.name.clone()).collect(),
-            background: FilterScene::background_among(materials),
-            strategies: self.welcome.strategies.clone(),
-            objects: self.mesh.objects.clone(),
-        }
+        FilterScene::new(self.welcome.frame, &self.mesh, self.welcome.strategies.clone())
     }
 }
 

@@ -30,7 +30,7 @@ pub enum ScriptError {
     },
 }
 
-/// Reads a script: one command a line, `#` begins a comment.
+/// Reads a script: one command a line, `#` begins a comment except within quotes.
 pub fn read(file: &Path) -> Result<Vec<Command>, ScriptError> {
     let unreadable = |error| ScriptError::Unreadable(file.to_owned(), error);
     if std::fs::metadata(file).map_err(unreadable)?.len() > LARGEST {
@@ -45,9 +45,45 @@ pub fn read(file: &Path) -> Result<Vec<Command>, ScriptError> {
 }
 
 fn parse(text: &str) -> Result<Vec<Command>, (usize, CommandError)> {
-    let uncommented = |line: &str| line.split('#').next().unwrap_or("").trim().to_owned();
+    let uncommented = |line: &str| {
+        let end = outside_quotes(line).find(|(_, letter)| *letter == '#');
+        line[..end.map_or(line.len(), |(i, _)| i)].trim().to_owned()
+    };
     let lines = text.lines().map(uncommented).zip(1..).filter(|(line, _)| !line.is_empty());
     lines.map(|(line, number)| line.parse().map_err(|error| (number, error))).collect()
+}
+
+/// The letters of a text that stand in no double quotes, with their places. A quote that is never
+/// closed is a letter as any other; `\"` does not close one.
+pub(super) fn outside_quotes(text: &str) -> impl Iterator<Item = (usize, char)> {
+    let mut rest = 0..text.len();
+    std::iter::from_fn(move || {
+        loop {
+            let place = rest.start;
+            let letter = text[rest.clone()].chars().next()?;
+            rest.start += letter.len_utf8();
+            if letter == '"'
+                && let Some(length) = closing_quote(&text[rest.clone()])
+            {
+                rest.start += length;
+            } else {
+                return Some((place, letter));
+            }
+        }
+    })
+}
+
+/// The bytes of `text` up to a quote that closes it, that included.
+fn closing_quote(text: &str) -> Option<usize> {
+    let mut letters = text.char_indices();
+    while let Some((i, letter)) = letters.next() {
+        match letter {
+            '"' => return Some(i + 1),
+            '\\' => drop(letters.next()),
+            _ => {}
+        }
+    }
+    None
 }
 
 #[cfg(test)]
@@ -59,6 +95,18 @@ mod tests {
         let commands = parse("# a view\n\ncamera frame # all of it\n  quit\n").expect("a script");
         let texts: Vec<String> = commands.iter().map(ToString::to_string).collect();
         assert_eq!(texts, ["camera frame", "quit"], "two commands");
+    }
+
+    /// Names as exporters write them, in a filter.
+    #[test]
+    fn odd_names_survive_a_script() {
+        let filter = r#"any on material "Rough Grey #1" or lpe "C.*'O\\'Brien \"glass\"'.*L""#;
+        let script = format!("filter set {filter} # they are \"odd\"\nfilter keep стекло #2\nquit");
+        let texts: Vec<String> =
+            parse(&script).expect("a script").iter().map(ToString::to_string).collect();
+        assert_eq!(texts, [format!("filter set {filter}").as_str(), "filter keep стекло", "quit"]);
+        let open = parse("image save 15\" screen.exr # a comment").expect("a script");
+        assert_eq!(open[0].to_string(), "image save 15\" screen.exr", "a quote alone is none");
     }
 
     #[test]

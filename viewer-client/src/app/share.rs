@@ -7,6 +7,7 @@
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 use thiserror::Error;
 
+use crate::app::script::outside_quotes;
 use crate::camera::ViewCamera;
 use crate::command::{
     CameraCommand, CloudCommand, Command, CommandError, FilterCommand, ImageCommand, PathCommand,
@@ -85,16 +86,16 @@ fn view(camera: &ViewCamera, settings: &Settings, selection: Option<&Selection>)
         commands.push(Command::Image(ImageCommand::Exposure(image.exposure)));
     }
     let mut wanted = vec![FilterCommand::Clear];
-    if filter.kept.iter().any(|kept| kept.on) && !filter.off {
+    if filter.kept().iter().any(|kept| kept.on) && !filter.is_off() {
         // Names are the user's own; what they stand for is not.
-        wanted.push(FilterCommand::Set(filter.wanted()));
+        wanted.push(FilterCommand::Set(filter.whole().clone()));
     } else {
-        if !filter.text.is_empty() {
-            wanted.push(FilterCommand::Set(filter.text.clone()));
+        if !filter.text().wants_all() {
+            wanted.push(FilterCommand::Set(filter.text().clone()));
         }
-        wanted.extend(filter.selectors.iter().map(|sphere| FilterCommand::Add(*sphere)));
-        wanted.extend(filter.inverted.then_some(FilterCommand::Invert(Switch::On)));
-        wanted.extend(filter.off.then_some(FilterCommand::Enable(Switch::Off)));
+        wanted.extend(filter.selectors().iter().map(|sphere| FilterCommand::Add(*sphere)));
+        wanted.extend(filter.is_inverted().then_some(FilterCommand::Invert(Switch::On)));
+        wanted.extend(filter.is_off().then_some(FilterCommand::Enable(Switch::Off)));
     }
     commands.extend(wanted.into_iter().map(Command::Filter));
     let shown = selection.map(|selection| {
@@ -118,13 +119,25 @@ pub fn read(link: &str) -> Result<Shared, LinkError> {
         return Err(LinkError::NoLink);
     }
     let text = percent_decode_str(encoded).decode_utf8()?;
-    let parts = text.split(';').map(str::trim).filter(|part| !part.is_empty());
+    let parts = parts(&text).into_iter().map(str::trim).filter(|part| !part.is_empty());
     let commands = parts.map(|part| {
         let problem = |error| LinkError::BadCommand(part.to_owned(), error);
         let command: Command = part.parse().map_err(problem)?;
         if only_looks(&command) { Ok(command) } else { Err(LinkError::Forbidden(part.to_owned())) }
     });
     Ok(Shared { address, commands: commands.collect::<Result<_, LinkError>>()? })
+}
+
+/// The commands of a link: a semicolon ends one, except within quotes.
+fn parts(text: &str) -> Vec<&str> {
+    let ends = outside_quotes(text).filter(|(_, letter)| *letter == ';').map(|(i, _)| i);
+    let mut parts = Vec::new();
+    let mut start = 0;
+    for end in ends.chain([text.len()]) {
+        parts.push(&text[start..end]);
+        start = end + 1;
+    }
+    parts
 }
 
 /// True for commands that a stranger may give.
@@ -150,13 +163,17 @@ fn only_looks(command: &Command) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use common::FilterText;
+
     use super::*;
     use crate::command::{Layer, Sphere};
 
     #[test]
     fn a_link_restores_the_view() {
         let mut settings = Settings::default();
-        settings.filter.text = "any on material \"a; b\" and film in rect(0.25, 0, 1, 0.5)".into();
+        let text = "any on material \"a;b 100%\" and any on material \"O'Brien \\\"#1\\\";стекло\" \
+                    and film in rect(0.25, 0, 1, 0.5)";
+        settings.filter.apply(&FilterCommand::Set(FilterText::read(text)));
         settings.image.layer = Layer::Dwell;
         settings.scene.opacity = 0.25;
         let sphere = Sphere { kind: common::SelectorKind::End, place: [0.5, 1.0, -2.0, 0.25] };
@@ -164,8 +181,6 @@ mod tests {
         settings.filter.apply(&FilterCommand::Invert(Switch::On));
         let mut camera = ViewCamera::default();
         camera.apply(CameraCommand::Orbit(33.5, -12.25));
-        // A semicolon in a name would end the command.
-        settings.filter.text = settings.filter.text.replace(';', ",");
         let path = crate::synthetic::batch(&[&[[1.0, 2.5, -3.0], [4.0, 6.0, 1e-7]]]);
         let mut reader = path.reader();
         let path = reader.next().expect("a path");
@@ -195,7 +210,7 @@ mod tests {
         settings.filter.apply(&FilterCommand::Keep("mine".to_owned()));
         settings.filter.apply(&FilterCommand::Use("mine".to_owned(), Switch::On));
         let shared = read(&link("a:1", &camera, &settings, None)).expect("our own link");
-        let wanted = Command::Filter(FilterCommand::Set(settings.filter.wanted()));
+        let wanted = Command::Filter(FilterCommand::Set(settings.filter.whole().clone()));
         assert!(shared.commands.contains(&wanted), "kept filters travel as text");
     }
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use common::{Filter, Selector, SelectorKind, Volume};
+use common::{FilterText, Selector, SelectorKind, Volume};
 use glam::DVec3;
 
 use super::Form;
@@ -19,8 +19,8 @@ const LONGEST_NAME: usize = 40;
 /// What may be done to the filter. `docs/FILTERS.md` has the grammar of its text.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FilterCommand {
-    /// This text is the filter from now on, beside the selectors; its grammar is right.
-    Set(String),
+    /// This text is the filter from now on, beside the selectors.
+    Set(FilterText),
     /// All paths are wanted: neither a text nor a selector is left.
     Clear,
     /// Whether the filter holds at all.
@@ -49,13 +49,6 @@ pub enum FilterCommand {
     Forget(String),
 }
 
-impl FilterCommand {
-    /// Makes `text` the filter, which leaves the selectors as they are; all paths where it is blank.
-    pub fn text(text: String) -> Self {
-        Self::Set(if text.is_empty() { "true".to_owned() } else { text })
-    }
-}
-
 /// A spherical selector: its kind, and its centre and radius in the file's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
@@ -73,6 +66,9 @@ impl Sphere {
         Selector { kind: self.kind, volume, by_segment: false }
     }
 }
+
+/// How every path is asked for in a command, where a text must stand.
+const ALL: &str = "true";
 
 /// A selector's word.
 #[derive(Clone, Copy)]
@@ -123,6 +119,7 @@ pub(super) const FORMS: &[Form] = &[
 impl fmt::Display for FilterCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Set(text) if text.text().is_empty() => write!(f, "set {ALL}"),
             Self::Set(text) => write!(f, "set {text}"),
             Self::Clear => write!(f, "clear"),
             Self::Enable(switch) => write!(f, "enable {switch}"),
@@ -148,10 +145,10 @@ pub(super) fn parse(words: &mut Words<'_>) -> Result<FilterCommand, CommandError
     Ok(match words.next("filter command")? {
         "set" => {
             let text = words.rest("TEXT")?;
-            let problem = Filter::parse(&text).err();
-            match problem {
+            let read = FilterText::read(if text == ALL { String::new() } else { text });
+            match read.error() {
                 Some(problem) => return Err(CommandError::BadFilter(problem.to_string())),
-                None => FilterCommand::Set(text),
+                None => FilterCommand::Set(read),
             }
         }
         "clear" => FilterCommand::Clear,

@@ -114,7 +114,7 @@ fn scene(world: &World<'_>) -> String {
 /// The whole filter, what it found, and what each condition lets through.
 fn filter(world: &World<'_>) -> String {
     let mut text = String::new();
-    line!(text, "{}", world.settings.filter.wanted());
+    line!(text, "{}", world.settings.filter.whole());
     let Some(counts) = world.filter_counts() else { return text };
     line!(text, "{}", found::text(world, counts));
     line!(text, "energy\t{}", found::energy(counts));

@@ -3,9 +3,8 @@
 mod filter;
 mod layout;
 pub mod region;
-pub mod tree;
 
-pub use filter::{FilterSettings, KeptFilter};
+pub use filter::{FilterSettings, FilterSource, KeptFilter};
 pub use layout::{Layout, SCALES, WIDTHS};
 
 use glam::{Vec3, Vec4};

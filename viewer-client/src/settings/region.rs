@@ -1,51 +1,44 @@
 //! The part of the image whose paths are wanted: one condition of the filter, found and replaced
 //! without touching the others.
 
-use common::{Filter, Leaf};
+use common::{FilmCondition, Filter, FilterText, Leaf};
 
 /// Left, top, right and bottom on the film, from 0 to 1.
 pub type Region = [f64; 4];
 
 /// The rectangle that a filter asks for, alone or along with other conditions.
-pub fn region_of(text: &str) -> Option<Region> {
+pub fn region_of(text: &FilterText) -> Option<Region> {
     fn rectangle(filter: &Filter) -> Option<Region> {
         match filter {
-            Filter::Leaf(Leaf::Film { min: [u0, v0], max: [u1, v1] }) => Some([*u0, *v0, *u1, *v1]),
-            Filter::And(parts) => parts.iter().find_map(rectangle),
-            _ => None,
-        }
-    }
-    rectangle(&Filter::parse(text).ok()?)
-}
-
-/// The filter `text` with its rectangle replaced; without one, it wants paths from all of the film.
-pub fn with_region(text: &str, region: Option<Region>) -> String {
-    let rest = Filter::parse(text).ok().and_then(without_region);
-    let [u0, v0, u1, v1] = region.unwrap_or_default();
-    let leaf = region.map(|_| Filter::Leaf(Leaf::Film { min: [u0, v0], max: [u1, v1] }));
-    match (rest, leaf) {
-        (None, None) => String::new(),
-        (Some(filter), None) | (None, Some(filter)) => filter.to_string(),
-        (Some(Filter::And(mut parts)), Some(leaf)) => {
-            parts.push(leaf);
-            Filter::And(parts).to_string()
-        }
-        (Some(rest), Some(leaf)) => Filter::And(vec![rest, leaf]).to_string(),
-    }
-}
-
-/// What is left of a filter without its rectangle; `None` where that is every path.
-fn without_region(filter: Filter) -> Option<Filter> {
-    match filter {
-        Filter::Constant(true) | Filter::Leaf(Leaf::Film { .. }) => None,
-        Filter::And(parts) => {
-            let mut rest: Vec<_> = parts.into_iter().filter_map(without_region).collect();
-            match rest.len() {
-                0 | 1 => rest.pop(),
-                _ => Some(Filter::And(rest)),
+            Filter::Leaf(Leaf::Film(FilmCondition { min: [u0, v0], max: [u1, v1] })) => {
+                Some([*u0, *v0, *u1, *v1])
             }
+            Filter::And(parts) => parts.iter().find_map(rectangle),
+            Filter::Leaf(_) | Filter::Constant(_) | Filter::Not(_) | Filter::Or(_) => None,
         }
-        other => Some(other),
+    }
+    rectangle(text.tree().ok()?)
+}
+
+/// The filter with its rectangle replaced; without one, it wants paths from all of the film.
+pub fn with_region(text: &FilterText, region: Option<Region>) -> FilterText {
+    let mut parts = match text.tree().cloned().map(without_region) {
+        Ok(Filter::And(parts)) => parts,
+        Ok(rest) => vec![rest],
+        Err(_) => Vec::new(),
+    };
+    parts.extend(region.map(|[u0, v0, u1, v1]| {
+        Filter::Leaf(Leaf::Film(FilmCondition { min: [u0, v0], max: [u1, v1] }))
+    }));
+    FilterText::from(&Filter::all_of(parts))
+}
+
+/// What is left of a filter without its rectangle.
+fn without_region(filter: Filter) -> Filter {
+    match filter {
+        Filter::Leaf(Leaf::Film(_)) => Filter::default(),
+        Filter::And(parts) => Filter::all_of(parts.into_iter().map(without_region).collect()),
+        other => other,
     }
 }
 
@@ -72,25 +65,25 @@ mod tests {
     #[test]
     fn a_region_is_added_replaced_and_taken_away() {
         let region = [0.25, 0.0, 0.75, 0.5];
-        let alone = with_region("", Some(region));
-        assert_eq!(alone, "film in rect(0.25, 0, 0.75, 0.5)", "alone");
+        let alone = with_region(&FilterText::default(), Some(region));
+        assert_eq!(alone.text(), "film in rect(0.25, 0, 0.75, 0.5)", "alone");
         assert_eq!(region_of(&alone), Some(region), "and found");
-        let beside = with_region("edges >= 4 and any is specular", Some(region));
+        let before = FilterText::read("edges >= 4 and any is specular");
+        let beside = with_region(&before, Some(region));
         assert_eq!(region_of(&beside), Some(region), "{beside}");
         let moved = with_region(&beside, Some([0.0, 0.0, 0.5, 0.5]));
         assert_eq!(region_of(&moved), Some([0.0, 0.0, 0.5, 0.5]), "{moved}");
-        assert_eq!(moved.matches("rect").count(), 1, "one at a time: {moved}");
-        let back = with_region(&moved, None);
-        assert_eq!(Filter::parse(&back), Filter::parse("edges >= 4 and any is specular"), "{back}");
-        assert_eq!(with_region(&alone, None), "", "every path again");
+        assert_eq!(moved.text().matches("rect").count(), 1, "one at a time: {moved}");
+        assert_eq!(with_region(&moved, None), before, "and back");
+        assert!(with_region(&alone, None).wants_all(), "every path again");
     }
 
     #[test]
     fn a_condition_under_not_or_or_is_not_the_region() {
-        let text = "not film in rect(0, 0, 0.5, 0.5)";
-        assert_eq!(region_of(text), None, "the outside of a rectangle is none");
-        let both = with_region(text, Some([0.0, 0.0, 1.0, 1.0]));
-        assert_eq!(both.matches("rect").count(), 2, "it stays: {both}");
+        let text = FilterText::read("not film in rect(0, 0, 0.5, 0.5)");
+        assert_eq!(region_of(&text), None, "the outside of a rectangle is none");
+        let both = with_region(&text, Some([0.0, 0.0, 1.0, 1.0]));
+        assert_eq!(both.text().matches("rect").count(), 2, "it stays: {both}");
     }
 
     #[test]

@@ -9,8 +9,11 @@ mod parse;
 mod symbol;
 
 use std::fmt;
+use std::ops::Range;
 
-use super::{FilterError, FilterScene, Name};
+use super::complete::Offers;
+use super::parse::Quoted;
+use super::{FilterError, FilterScene, Name, NameList};
 use symbol::Bases;
 
 pub(super) use automaton::LightPathAutomaton;
@@ -29,8 +32,8 @@ pub struct LightPathExpression {
     node: Node,
     labels: Vec<Name>,
     direction: Direction,
-    /// Bytes before it in the text it was read from.
-    offset: usize,
+    /// Where it stands in the text it was read from, in bytes.
+    span: Range<usize>,
 }
 
 impl PartialEq for LightPathExpression {
@@ -77,14 +80,20 @@ impl LightPathExpression {
             let message = "a path begins at the camera or at a light; begin with `C`, `L` or `.*`";
             return Err(FilterError::new(0..text.len(), message));
         };
-        Ok(Self { text: text.to_owned(), node, labels, direction, offset: 0 })
+        Ok(Self { text: text.to_owned(), node, labels, direction, span: 0..text.len() })
     }
 
-    /// The same expression, which stands `offset` bytes into a longer text.
-    pub(super) fn moved(mut self, offset: usize) -> Self {
-        self.offset += offset;
-        self.labels.iter_mut().for_each(|label| label.offset += offset);
+    /// The same expression, read from the quotes of a longer text.
+    pub(super) fn placed(mut self, quoted: &Quoted) -> Self {
+        self.span = quoted.outer_range(0..self.text.len());
+        self.labels.iter_mut().for_each(|label| label.offset = quoted.outer(label.offset));
         self
+    }
+
+    /// True where a way of going on and a kind of scattering stand side by side, which are two vertices
+    /// and mostly meant as one.
+    pub(super) fn is_likely_mistaken(&self) -> bool {
+        self.node.has_split_event()
     }
 
     /// The text it was parsed from.
@@ -94,9 +103,10 @@ impl LightPathExpression {
 
     /// Compiles it for a scene, whose materials are the labels.
     pub(super) fn compile(&self, scene: &FilterScene) -> Result<LightPathAutomaton, FilterError> {
-        let mut labels = vec![0; scene.material_count()];
+        let mut labels = vec![0; scene.materials.len()];
         for (number, name) in (1..).zip(&self.labels) {
-            for (label, named) in labels.iter_mut().zip(scene.materials_named(name)?) {
+            let named = scene.materials_named(NameList::Materials, name)?;
+            for (label, named) in labels.iter_mut().zip(named) {
                 if named {
                     *label = number;
                 }
@@ -107,14 +117,20 @@ impl LightPathExpression {
             self.labels.len(),
             self.direction,
             labels,
-            scene.background,
+            scene.background(),
         );
         automaton.ok_or_else(|| {
             let message = "the light path expression needs too large a table; use smaller \
                            repetitions, and `*` instead of large numbers";
-            FilterError::new(self.offset..self.offset + self.text.len(), message)
+            FilterError::new(self.span.clone(), message)
         })
     }
+}
+
+/// What may come at the end of an expression that is still being written, and whether it could end
+/// there.
+pub(super) fn offers<'a>(text: &'a str, offers: Offers<'a>) -> (Option<Offers<'a>>, bool) {
+    (parse::offers(text, offers), LightPathExpression::parse(text).is_ok())
 }
 
 impl fmt::Display for LightPathExpression {
@@ -123,7 +139,36 @@ impl fmt::Display for LightPathExpression {
     }
 }
 
+impl Default for LightPathExpression {
+    /// Every path.
+    fn default() -> Self {
+        Self::parse("C.*L").expect("an expression")
+    }
+}
+
 impl Node {
+    /// True where a reflection or refraction is followed by a kind of scattering.
+    fn has_split_event(&self) -> bool {
+        let is = |node: &Self, letters: &str| match node {
+            Self::Event(atoms, false) => match atoms.as_slice() {
+                [Atom { bases, label: None }] => {
+                    letters.chars().any(|letter| Bases::of_letter(letter) == Some(*bases))
+                }
+                _ => false,
+            },
+            Self::Event(..) | Self::Sequence(_) | Self::Either(_) | Self::Repeat { .. } => false,
+        };
+        match self {
+            Self::Event(..) => false,
+            Self::Sequence(nodes) => {
+                let split = |pair: &[Self]| is(&pair[0], "RTV") && is(&pair[1], "DGSs");
+                nodes.windows(2).any(split) || nodes.iter().any(Self::has_split_event)
+            }
+            Self::Either(nodes) => nodes.iter().any(Self::has_split_event),
+            Self::Repeat { node, .. } => node.has_split_event(),
+        }
+    }
+
     /// Adds the events that a path fitting the node may begin with; returns whether the node fits
     /// no vertices at all, so that what follows it may come first.
     fn collect_first(&self, first: &mut Bases) -> bool {

@@ -34,6 +34,31 @@ mod bit {
     pub(super) const VOLUME: u16 = 1 << 11;
 }
 
+/// The letters, what they stand for and the events that are so; the usual ones first.
+pub(super) const LETTERS: [(char, &str, Bases); 11] = [
+    ('C', "the camera", Bases::CAMERA),
+    ('L', "any light", Bases::LIGHTS),
+    ('D', "diffuse", Bases(bit::REFLECT_DIFFUSE | bit::TRANSMIT_DIFFUSE)),
+    ('G', "glossy", Bases(bit::REFLECT_GLOSSY | bit::TRANSMIT_GLOSSY)),
+    ('S', "mirror or clear glass", Bases(bit::REFLECT_SINGULAR | bit::TRANSMIT_SINGULAR)),
+    (
+        'R',
+        "a reflection",
+        Bases(bit::REFLECT_DIFFUSE | bit::REFLECT_GLOSSY | bit::REFLECT_SINGULAR),
+    ),
+    (
+        'T',
+        "a refraction",
+        Bases(
+            bit::TRANSMIT_DIFFUSE | bit::TRANSMIT_GLOSSY | bit::TRANSMIT_SINGULAR | bit::STRAIGHT,
+        ),
+    ),
+    ('O', "a surface that emits", Bases(bit::EMITTER)),
+    ('B', "the environment", Bases(bit::BACKGROUND)),
+    ('V', "a scattering in a volume", Bases(bit::VOLUME)),
+    ('s', "straight through", Bases(bit::STRAIGHT)),
+];
+
 impl Bases {
     /// Every event.
     pub(super) const ALL: Self = Self((1 << BASES) - 1);
@@ -44,25 +69,9 @@ impl Bases {
 
     /// The events that `letter` stands for: the first letter of a triple or a letter alone.
     pub(super) fn of_letter(letter: char) -> Option<Self> {
-        Some(match letter {
-            'C' | 'E' => Self::CAMERA,
-            'L' => Self::LIGHTS,
-            'O' => Self(bit::EMITTER),
-            'B' => Self(bit::BACKGROUND),
-            'R' => Self(bit::REFLECT_DIFFUSE | bit::REFLECT_GLOSSY | bit::REFLECT_SINGULAR),
-            'T' => Self(
-                bit::TRANSMIT_DIFFUSE
-                    | bit::TRANSMIT_GLOSSY
-                    | bit::TRANSMIT_SINGULAR
-                    | bit::STRAIGHT,
-            ),
-            'V' => Self(bit::VOLUME),
-            'D' => Self(bit::REFLECT_DIFFUSE | bit::TRANSMIT_DIFFUSE),
-            'G' => Self(bit::REFLECT_GLOSSY | bit::TRANSMIT_GLOSSY),
-            'S' => Self(bit::REFLECT_SINGULAR | bit::TRANSMIT_SINGULAR),
-            's' => Self(bit::STRAIGHT),
-            _ => return None,
-        })
+        // OSL has the eye, too.
+        let letter = if letter == 'E' { 'C' } else { letter };
+        LETTERS.iter().find(|(known, ..)| *known == letter).map(|&(.., bases)| bases)
     }
 
     /// The events of both.

@@ -67,6 +67,22 @@ fn a_rough_boundary_reflects_or_refracts_as_its_points_say() {
     }
 }
 
+#[test]
+fn two_vertices_that_were_meant_to_be_one_are_pointed_out() {
+    for (text, mistaken) in [
+        ("lpe \"CRDL\"", true),
+        ("lpe \"C(D|T S)*L\"", true),
+        ("lpe \"C<RD>L\"", false),
+        ("lpe \"C<TS'TDX'>.*L\"", false),
+        ("lpe \"CDS+L\" and any on material \"TD\"", false),
+        ("edges == 2", false),
+    ] {
+        let filter = Filter::parse(text).expect(text);
+        let remark = filter.leaves().into_iter().find_map(Leaf::remark);
+        assert_eq!(remark.is_some(), mistaken, "{text}");
+    }
+}
+
 /// A random expression over letters, as a tree that both sides are made from.
 #[derive(Clone, Debug)]
 enum Tree {

@@ -1,8 +1,12 @@
 //! Filters: their text, their judgement, and what their tally says.
 
+mod completion;
 mod judgement;
+mod laws;
 mod light_path;
+mod random;
 mod text;
+mod tree;
 
 use glam::DVec3;
 
@@ -12,10 +16,15 @@ use crate::{Event, PathHeader, SceneFrame, VertexKind, VertexRecord};
 /// A scene whose frame is not the file's, with names of every kind.
 fn scene() -> FilterScene {
     let strings = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
+    let material = |name: &str| FilterMaterial {
+        name: name.to_owned(),
+        is_light: matches!(name, "lamp" | "spot" | "sky"),
+        is_background: name == "sky",
+    };
+    let materials = ["wall", "glass", "lamp", "wall", "spot", "sky"].map(material).to_vec();
     FilterScene {
         frame: SceneFrame { centre: DVec3::new(1.0, 2.0, 3.0), scale: 4.0, light: 1.0 },
-        materials: strings(&["wall", "glass", "lamp", "wall", "spot", "sky"]),
-        background: Some(5),
+        materials,
         strategies: strings(&["bidirectional", "lens", "lens subpath"]),
         objects: vec![
             FilterObject { name: "table".to_owned(), primitives: 0..10 },

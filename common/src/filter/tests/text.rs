@@ -1,127 +1,6 @@
 //! The text form: what is printed reads back, and what is wrong is told where.
 
-use proptest::prelude::*;
-
 use super::*;
-use crate::filter::parse::MAX_FILTER_BYTES;
-
-fn finite() -> impl Strategy<Value = f64> {
-    prop_oneof![-1e3..1e3_f64, (-300..300_i32).prop_map(|e| 1.7 * 10_f64.powi(e)), Just(0.0)]
-}
-
-fn point() -> impl Strategy<Value = DVec3> {
-    [finite(), finite(), finite()].prop_map(DVec3::from_array)
-}
-
-fn volume() -> impl Strategy<Value = Volume> {
-    let sphere =
-        (point(), 1e-9..1e9_f64).prop_map(|(centre, radius)| Volume::Sphere { centre, radius });
-    let cuboid = (point(), point()).prop_map(|(a, b)| Volume::Box { min: a.min(b), max: a.max(b) });
-    prop_oneof![sphere, cuboid]
-}
-
-fn name() -> impl Strategy<Value = Name> {
-    "[a-zA-Z0-9 \"\\\\_.()é-]{1,8}".prop_map(|text| Name::from(text.as_str()))
-}
-
-fn chosen<T: Copy + std::fmt::Debug + 'static>(
-    names: &'static [(T, &'static str)],
-) -> impl Strategy<Value = T> {
-    (0..names.len()).prop_map(move |i| names[i].0)
-}
-
-fn vertex_test() -> impl Strategy<Value = VertexTest> {
-    let leaf = prop_oneof![
-        volume().prop_map(VertexTest::Inside),
-        (chosen(&Named::NAMES), name()).prop_map(|(kind, name)| VertexTest::On(kind, name)),
-        chosen(&VertexClass::NAMES).prop_map(VertexTest::Is),
-    ];
-    leaf.prop_recursive(3, 12, 3, |inner| {
-        prop_oneof![
-            inner.clone().prop_map(|part| VertexTest::Not(Box::new(part))),
-            prop::collection::vec(inner.clone(), 2..4).prop_map(VertexTest::And),
-            prop::collection::vec(inner, 2..4).prop_map(VertexTest::Or),
-        ]
-    })
-}
-
-fn leaf() -> impl Strategy<Value = Leaf> {
-    let attribute = || (0..Attribute::NAMES.len()).prop_map(|i| Attribute::NAMES[i].0);
-    let place = || chosen(&Place::NAMES);
-    let expressions = ["CD*L", "L.*'gl\"ass'S{2,}C", ".*", "C([DG]|<TS>)+L"];
-    prop_oneof![
-        (place(), vertex_test()).prop_map(|(place, test)| Leaf::Vertex { place, test }),
-        (place(), volume()).prop_map(|(place, volume)| Leaf::Segment { place, volume }),
-        (0..4_usize).prop_map(move |i| {
-            Leaf::LightPath(LightPathExpression::parse(expressions[i]).expect("well-formed"))
-        }),
-        [0.0..1.0_f64, 0.0..1.0, 0.0..1.0, 0.0..1.0].prop_map(|[a, b, c, d]| Leaf::Film {
-            min: [a.min(c), b.min(d)],
-            max: [a.max(c), b.max(d)],
-        }),
-        (attribute(), chosen(&Comparison::SIGNS), finite()).prop_map(
-            |(attribute, comparison, value)| Leaf::Number { attribute, comparison, value }
-        ),
-        (attribute(), finite(), finite()).prop_map(|(attribute, a, b)| Leaf::Range {
-            attribute,
-            least: a.min(b),
-            most: a.max(b)
-        }),
-        prop::collection::vec(name(), 1..3).prop_map(Leaf::Strategy),
-    ]
-}
-
-fn filter() -> impl Strategy<Value = Filter> {
-    let leaf = prop_oneof![4 => leaf().prop_map(Filter::Leaf), 1 => any::<bool>().prop_map(Filter::Constant)];
-    leaf.prop_recursive(4, 16, 3, |inner| {
-        prop_oneof![
-            inner.clone().prop_map(|part| Filter::Not(Box::new(part))),
-            prop::collection::vec(inner.clone(), 2..4).prop_map(Filter::And),
-            prop::collection::vec(inner, 2..4).prop_map(Filter::Or),
-        ]
-    })
-}
-
-proptest! {
-    #[test]
-    fn what_is_printed_reads_back(filter in filter()) {
-        let text = filter.to_string();
-        prop_assume!(text.len() <= MAX_FILTER_BYTES);
-        match Filter::parse(&text) {
-            Ok(read) => prop_assert_eq!(read, filter, "{}", text),
-            Err(error) => prop_assert!(false, "{}", error.pointed(&text)),
-        }
-    }
-
-    /// Bits of valid texts, cut out, repeated and mixed: an answer, never a panic, and a complaint
-    /// that points into the text.
-    #[test]
-    fn mutilated_texts_are_answered(
-        filter in filter(),
-        cuts in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>()), 1..6),
-        noise in "[ -~]{0,12}|\\PC{0,4}",
-    ) {
-        let mut text = filter.to_string();
-        for (i, (from, to)) in cuts.iter().enumerate() {
-            let (a, b) = (from.index(text.len() + 1), to.index(text.len() + 1));
-            let (a, b) = (text.floor_char_boundary(a.min(b)), text.floor_char_boundary(a.max(b)));
-            match i % 3 {
-                0 => text.replace_range(a..b, &noise),
-                1 => {
-                    let copy = text[a..b].to_owned();
-                    text.insert_str(a, &copy);
-                }
-                _ => text.truncate(b),
-            }
-        }
-        text.truncate(text.floor_char_boundary(2 * MAX_FILTER_BYTES));
-        let found = Filter::parse(&text).and_then(|filter| filter.compile(&scene()));
-        if let Err(error) = found {
-            prop_assert!(error.span.start <= text.len(), "{error:?} on {text:?}");
-            prop_assert!(!error.pointed(&text).is_empty());
-        }
-    }
-}
 
 #[test]
 fn spellings_mean_the_same() {
@@ -130,7 +9,7 @@ fn spellings_mean_the_same() {
         ("  ", "true"),
         ("edges>=4&&!lpe\"CD+L\"", "edges >= 4 and not lpe \"CD+L\""),
         ("depth = 2 | depth = 3", "edges == 2 or edges == 3"),
-        ("strategy != seed", "not strategy == \"seed\""),
+        ("strategy != seed", "strategy != \"seed\""),
         ("strategy in (lens, \"lens subpath\")", "strategy in (\"lens\" , \"lens subpath\")"),
         ("any in sphere(1,2.5,-3e1,.5)", "any in sphere(1, 2.5, -30, 0.5)"),
         ("a", ""),

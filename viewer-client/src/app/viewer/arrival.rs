@@ -42,7 +42,7 @@ impl Viewer {
         self.appear();
         if self.filter_changed.is_some_and(|at| at.elapsed() >= HAND) {
             self.filter_changed = None;
-            if self.settings.filter.wanted() != self.asked_for {
+            if *self.settings.filter.whole() != self.asked_for {
                 self.ask_for_paths();
             }
         }

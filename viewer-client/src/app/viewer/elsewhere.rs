@@ -79,10 +79,9 @@ impl Viewer {
         // Until the daemon answers, what is held shows what the filter does.
         self.judge();
         self.filters += 1;
-        let text = self.settings.filter.wanted();
-        self.asked_for.clone_from(&text);
+        self.asked_for.clone_from(self.settings.filter.whole());
         if let Some(link) = &self.link
-            && !link.set_filter(self.filters, text)
+            && !link.set_filter(self.filters, self.asked_for.to_string())
         {
             let problem = "The filter was not sent: the daemon is busy; set it again.";
             self.status.say(Err(problem.to_owned()));

@@ -1,7 +1,7 @@
 //! The filter applied to the paths that the viewer holds.
 
 use common::{
-    CompiledFilter, Filter, FilterScene, FilterTally, PathHeader, SceneFrame, VertexRecord,
+    CompiledFilter, FilterScene, FilterTally, PathHeader, SceneFrame, SceneMesh, VertexRecord,
 };
 
 use super::Viewer;
@@ -36,18 +36,14 @@ impl Viewer {
     fn compiled(&self) -> Option<CompiledFilter> {
         let welcome = self.status.welcome.as_ref();
         let mesh = self.model.as_ref().map(|model| &model.mesh);
-        let materials = mesh.map(|mesh| mesh.materials.as_slice()).unwrap_or_default();
         let unknown = SceneFrame { centre: glam::DVec3::ZERO, scale: 1.0, light: 1.0 };
-        let scene = FilterScene {
-            frame: welcome.map_or(unknown, |welcome| welcome.frame),
-            materials: materials.iter().map(|material| material.name.clone()).collect(),
-            background: FilterScene::background_among(materials),
-            strategies: welcome.map(|w| w.strategies.clone()).unwrap_or_default(),
-            objects: mesh.map(|mesh| mesh.objects.clone()).unwrap_or_default(),
-        };
-        let text = self.settings.filter.wanted();
-        let text = if text.is_empty() { "true" } else { text.as_str() };
-        Filter::parse(text).ok()?.compile(&scene).ok()
+        let none = SceneMesh::default();
+        let scene = FilterScene::new(
+            welcome.map_or(unknown, |welcome| welcome.frame),
+            mesh.unwrap_or(&none),
+            welcome.map(|w| w.strategies.clone()).unwrap_or_default(),
+        );
+        self.settings.filter.whole().tree().ok()?.compile(&scene).ok()
     }
 }
 

@@ -8,7 +8,7 @@ mod selecting;
 
 use std::time::{Duration, Instant};
 
-use common::{Appearance, Gaze};
+use common::{Appearance, FilterText, Gaze};
 use egui_wgpu::RenderState;
 
 use crate::app::desktop::{Connect, Desk};
@@ -69,7 +69,7 @@ pub struct Viewer {
     /// Filters set so far: the number of the last one.
     filters: u32,
     /// The filter that was asked for last, and when the user changed it since.
-    asked_for: String,
+    asked_for: FilterText,
     filter_changed: Option<Instant>,
     /// The filter that the daemon last said it follows.
     filter_in_force: u32,
@@ -117,7 +117,7 @@ impl Viewer {
             orders: 0,
             appearance: (Appearance::default(), Instant::now()),
             filters: 0,
-            asked_for: String::new(),
+            asked_for: FilterText::default(),
             filter_changed: None,
             filter_in_force: 0,
             selection: None,
@@ -145,7 +145,7 @@ impl Viewer {
     /// Takes over a connection.
     pub fn set_link(&mut self, link: Link) {
         self.link = Some(link);
-        if !self.settings.filter.wanted().is_empty() {
+        if !self.settings.filter.whole().wants_all() {
             self.ask_for_paths();
         }
     }
@@ -157,14 +157,14 @@ impl Viewer {
             Some(layout) => self.settings.layout.clone_from(layout),
             None => self.settings.layout.hint = true,
         }
-        self.settings.filter.kept.clone_from(&habits.filters);
+        self.settings.filter.keep_all(&habits.filters);
         self.desk.habits = habits;
         self.desk.connect = Some(connect);
     }
 
     /// What the user is used to by now.
     pub fn habits(&self) -> Habits {
-        let mut filters = self.settings.filter.kept.clone();
+        let mut filters = self.settings.filter.kept().to_vec();
         for kept in &mut filters {
             kept.on = false;
         }
@@ -329,7 +329,7 @@ impl Viewer {
             let lens = self.camera.lens(1.0);
             let far = lens.eye + 0.5 * self.camera.bounds().radius() * lens.forward;
             let gaze = Gaze { eye: lens.eye.into(), target: far.into() };
-            Appearance { gaze: Some(gaze), filter: self.settings.filter.wanted() }
+            Appearance { gaze: Some(gaze), filter: self.settings.filter.whole().to_string() }
         } else {
             Appearance::default()
         };

@@ -1,27 +1,23 @@
 //! The filter's text as a tree of conditions that are put together by hand.
 
 mod add;
-mod leaf;
+mod edit;
 
-use common::{Filter, VertexTest};
+use common::{Filter, FilterScene, FilterText, Spot, VertexTest};
 use egui::{Align, Button, ComboBox, Label, Layout, RichText, Ui, vec2};
 
-use super::filter::complete::Vocabulary;
-use super::filter::vocabulary;
+use super::filter::filter_scene;
 use crate::command::FilterCommand;
-use crate::settings::tree::negated;
 use crate::world::World;
 
 /// Width of the menu at the end of a line and of the gap before it, in points.
 const MORE_WIDTH: f32 = 36.0;
 
-/// What conditions are about: names, and places.
+/// What conditions are about: names, and where a new region lies.
 #[derive(Debug)]
 pub(super) struct Context {
-    names: Vocabulary,
-    /// A place in the scene and a length, in the units of the file: where a new region lies.
-    centre: [f64; 3],
-    radius: f64,
+    scene: FilterScene,
+    spot: Spot,
 }
 
 impl Context {
@@ -34,23 +30,20 @@ impl Context {
         // Two digits of the radius: a text that people read.
         let grain = 10.0_f64.powf(radius.log10().floor() - 1.0);
         let neat = |x: f64| if grain > 0.0 { (x / grain).round() / (1.0 / grain) } else { x };
-        Self {
-            names: vocabulary(world),
-            centre: names.world(middle.into()).to_array().map(neat),
-            radius: neat(radius),
-        }
+        let centre = names.world(middle.into()).map(neat);
+        Self { scene: filter_scene(world), spot: Spot { centre, radius: neat(radius) } }
     }
 }
 
 /// What the user did with a part of the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Deed {
+enum Edit {
     Nothing,
     Changed,
     Removed,
 }
 
-impl Deed {
+impl Edit {
     fn or(self, other: Self) -> Self {
         if self == Self::Nothing { other } else { self }
     }
@@ -62,19 +55,20 @@ impl Deed {
 
 /// Shows the tree of the text; changes make a new text.
 pub(super) fn ui(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(FilterCommand)) {
-    let Ok(mut filter) = Filter::parse(&world.settings.filter.text) else { return };
+    let Ok(filter) = world.settings.filter.text().tree() else { return };
+    let mut filter = filter.clone();
     let context = Context::of(world);
-    let deed = if filter == Filter::Constant(true) {
-        Deed::Nothing
+    let edit = if filter == Filter::Constant(true) {
+        Edit::Nothing
     } else {
         ui.spacing_mut().item_spacing.x = 4.0;
         node(ui, &mut filter, &context, 0)
     };
-    if deed == Deed::Removed {
-        push(FilterCommand::text(String::new()));
+    if edit == Edit::Removed {
+        push(FilterCommand::Set(FilterText::default()));
         return;
     }
-    let mut changed = deed == Deed::Changed;
+    let mut changed = edit == Edit::Changed;
     ui.horizontal(|ui| {
         let is_group = matches!(filter, Filter::And(_) | Filter::Or(_));
         if is_group {
@@ -89,54 +83,54 @@ pub(super) fn ui(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(FilterCom
         }
     });
     if changed {
-        push(FilterCommand::text(filter.to_string()));
+        push(FilterCommand::Set(FilterText::from(&filter)));
     }
 }
 
 /// A part of the tree, `depth` levels below its root.
-fn node(ui: &mut Ui, filter: &mut Filter, context: &Context, depth: usize) -> Deed {
+fn node(ui: &mut Ui, filter: &mut Filter, context: &Context, depth: usize) -> Edit {
     match filter {
         Filter::And(_) | Filter::Or(_) => group(ui, filter, false, context, depth),
         Filter::Not(inner) if matches!(**inner, Filter::And(_) | Filter::Or(_)) => {
-            let deed = group(ui, inner, true, context, depth);
-            turn_if_asked(filter, deed)
+            let edit = group(ui, inner, true, context, depth);
+            turn_if_asked(filter, edit)
         }
         Filter::Not(inner) => line(ui, inner, true, context).apply(filter),
         _ => {
             let mut own = std::mem::take(filter);
-            let deed = line(ui, &mut own, false, context);
+            let edit = line(ui, &mut own, false, context);
             *filter = own;
-            deed.apply(filter)
+            edit.apply(filter)
         }
     }
 }
 
 /// What the user did with a line, which stands alone or below a `not`.
 #[derive(Debug)]
-struct LineDeed {
-    deed: Deed,
+struct LineEdit {
+    edit: Edit,
     turned: bool,
     /// Another condition, and whether either is enough.
     more: Option<(Filter, bool)>,
 }
 
-impl LineDeed {
-    fn apply(self, filter: &mut Filter) -> Deed {
+impl LineEdit {
+    fn apply(self, filter: &mut Filter) -> Edit {
         if self.turned {
-            *filter = negated(std::mem::take(filter));
+            *filter = std::mem::take(filter).negated();
         }
         if let Some((more, either)) = self.more {
             let parts = vec![std::mem::take(filter), more];
             *filter = if either { Filter::Or(parts) } else { Filter::And(parts) };
-            return Deed::Changed;
+            return Edit::Changed;
         }
-        if self.turned { self.deed.or(Deed::Changed) } else { self.deed }
+        if self.turned { self.edit.or(Edit::Changed) } else { self.edit }
     }
 }
 
 /// A condition.
-fn line(ui: &mut Ui, filter: &mut Filter, negative: bool, context: &Context) -> LineDeed {
-    let mut done = LineDeed { deed: Deed::Nothing, turned: false, more: None };
+fn line(ui: &mut Ui, filter: &mut Filter, negative: bool, context: &Context) -> LineEdit {
+    let mut done = LineEdit { edit: Edit::Nothing, turned: false, more: None };
     let row = vec2(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(row, Layout::left_to_right(Align::Min), |ui| {
         // The parts wrap beside the menu, which stays at the end of the first line.
@@ -155,17 +149,17 @@ fn parts(
     ui: &mut Ui,
     (filter, negative): (&mut Filter, bool),
     context: &Context,
-    done: &mut LineDeed,
+    done: &mut LineEdit,
 ) {
     if ui.small_button("×").on_hover_text("Take this condition away").clicked() {
-        done.deed = Deed::Removed;
+        done.edit = Edit::Removed;
     }
     let not = Button::selectable(negative, "not").small();
     done.turned = ui.add(not).on_hover_text("Want the opposite").clicked();
     match filter {
         Filter::Leaf(leaf) => {
-            let changed = leaf::edit(ui, leaf, context);
-            done.deed = done.deed.or(Deed::changed(changed));
+            let changed = edit::edit(ui, leaf, context);
+            done.edit = done.edit.or(Edit::changed(changed));
         }
         other => {
             fixed(ui, other.to_string());
@@ -195,16 +189,16 @@ fn group(
     negative: bool,
     context: &Context,
     depth: usize,
-) -> Deed {
+) -> Edit {
     let mut either = matches!(filter, Filter::Or(_));
     let (Filter::And(mut parts) | Filter::Or(mut parts)) = std::mem::take(filter) else {
-        return Deed::Nothing;
+        return Edit::Nothing;
     };
-    let mut deed = Deed::Nothing;
+    let mut edit = Edit::Nothing;
     let mut turned = false;
     ui.horizontal(|ui| {
         if ui.small_button("×").on_hover_text("Take all of these away").clicked() {
-            deed = Deed::Removed;
+            edit = Edit::Removed;
         }
         let not = Button::selectable(negative, "not").small();
         turned = ui.add(not).on_hover_text("Want the opposite of all of it").clicked();
@@ -218,46 +212,46 @@ fn group(
             })
             .response
             .on_hover_text("Whether a path must meet all of these, or any");
-        deed = deed.or(Deed::changed(before != either));
+        edit = edit.or(Edit::changed(before != either));
         if let Some(more) = add::menu(ui, "+", context) {
             parts.push(more);
-            deed = deed.or(Deed::Changed);
+            edit = edit.or(Edit::Changed);
         }
     });
     let mut gone = None;
     ui.indent(("parts", depth), |ui| {
         for (index, part) in parts.iter_mut().enumerate() {
             ui.push_id(index, |ui| match node(ui, part, context, depth + 1) {
-                Deed::Removed => gone = Some(index),
-                other => deed = deed.or(other),
+                Edit::Removed => gone = Some(index),
+                other => edit = edit.or(other),
             });
         }
     });
     if let Some(index) = gone {
         parts.remove(index);
-        deed = deed.or(Deed::Changed);
+        edit = edit.or(Edit::Changed);
     }
     *filter = match parts.len() {
-        0 => return Deed::Removed,
+        0 => return Edit::Removed,
         1 => parts.remove(0),
         _ if either => Filter::Or(parts),
         _ => Filter::And(parts),
     };
     if turned {
         *filter = Filter::Not(Box::new(std::mem::take(filter)));
-        return deed.or(Deed::Changed);
+        return edit.or(Edit::Changed);
     }
-    deed
+    edit
 }
 
 /// A group below a `not` that was turned is below two of them: neither is needed.
-fn turn_if_asked(filter: &mut Filter, deed: Deed) -> Deed {
+fn turn_if_asked(filter: &mut Filter, edit: Edit) -> Edit {
     if let Filter::Not(inner) = filter
         && let Filter::Not(twice) = inner.as_mut()
     {
         *filter = std::mem::take(twice);
     }
-    deed
+    edit
 }
 
 /// The tests of one vertex that are joined, each with its own line.
@@ -279,7 +273,7 @@ fn joined_tests(
                     changed = true;
                 }
             }
-            changed |= leaf::edit_test(ui, part, context);
+            changed |= edit::edit_test(ui, part, context);
             if ui.small_button("×").on_hover_text("Take this test away").clicked() {
                 gone = Some(index);
             }

@@ -26,7 +26,7 @@ fn builder(text: &str) -> Harness<'static, Stage> {
     let mut stage = Stage::new(Alone);
     stage.status.welcome(welcome());
     stage.model = Model::new(mesh());
-    stage.settings.filter.text = text.to_owned();
+    stage.settings.filter.apply(&FilterCommand::Set(FilterText::read(text)));
     let mut harness = stage.harness();
     harness.run_steps(3);
     harness
@@ -41,7 +41,7 @@ fn text(harness: &mut Harness<'_, Stage>) -> String {
         }
     }
     harness.run_steps(3);
-    harness.state().settings.filter.text.clone()
+    harness.state().settings.filter.text().to_string()
 }
 
 fn click(harness: &mut Harness<'_, Stage>, label: &str) -> String {
@@ -121,13 +121,38 @@ fn text_and_tree_are_the_same_filter() {
         assert_eq!(text(&mut harness), filter, "showing it changes nothing");
         assert_eq!(harness.state().said, [], "{filter}");
     }
+    let beyond = "film in rect(-0.5, 0, 2, 0.5) and luminance >= -1";
+    assert_eq!(text(&mut builder(beyond)), beyond, "not even what no hand would choose");
     let mut harness = builder("any (on material \"wall\" and is diffuse)");
     assert_eq!(click(&mut harness, "and"), "any (on material \"wall\" or is diffuse)", "a click");
-    harness.get_all_by_label("&").next();
     let mut harness = builder("any is diffuse");
-    click(&mut harness, "&");
-    let same = click(&mut harness, "on material wall");
+    let same = choose(&mut harness, &["&", "Material", "wall"]);
     assert_eq!(same, "any (is diffuse and on material \"wall\")", "at the same vertex");
+}
+
+/// Chooses in the list of this number within a row.
+fn select(harness: &mut Harness<'_, Stage>, list: usize, label: &str) -> String {
+    harness.get_all_by_role(Role::ComboBox).nth(list).expect("a list").click();
+    harness.run_steps(3);
+    click(harness, label)
+}
+
+#[test]
+fn every_part_of_a_condition_can_be_changed_in_its_place() {
+    let mut harness = builder("any in sphere(0, 1, 0, 0.5)");
+    assert_eq!(select(&mut harness, 0, "all"), "all in sphere(0, 1, 0, 0.5)", "the place");
+    let cube = "all in box(-0.5, 0.5, -0.5, 0.5, 1.5, 0.5)";
+    assert_eq!(select(&mut harness, 2, "box"), cube, "the shape, around the same point");
+    assert_eq!(select(&mut harness, 1, "is"), "all is specular", "what is asked");
+    assert_eq!(select(&mut harness, 1, "on"), "all on material \"lamp\"", "a name of the scene");
+    assert_eq!(select(&mut harness, 2, "object"), "all on object \"room\"", "of each kind");
+    let mut harness = builder("edges >= 3");
+    assert_eq!(select(&mut harness, 1, "in"), "edges in 3..3", "a range from the number");
+    assert_eq!(select(&mut harness, 0, "dwell"), "dwell in 3..3", "of another one");
+    assert_eq!(select(&mut harness, 1, "<"), "dwell < 3", "and back");
+    let mut harness = builder("strategy == \"lens\"");
+    assert_eq!(select(&mut harness, 0, "!="), "strategy != \"lens\"", "all but this one");
+    assert_eq!(select(&mut harness, 0, "in"), "strategy in (\"lens\")", "several");
 }
 
 #[test]

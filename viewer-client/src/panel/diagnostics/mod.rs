@@ -135,7 +135,7 @@ fn verdict(ui: &mut Ui, world: &World<'_>, diagnostics: &Diagnostics, commands: 
         let paths = ui.button("Paths to the worst").on_hover_text("Filters by the worst tile");
         if paths.clicked() && world.film.size() != [0, 0] {
             let region = region_of(diagnostics, worst.tile, world.film.size());
-            let text = region::with_region(&world.settings.filter.text, Some(region));
+            let text = region::with_region(world.settings.filter.text(), Some(region));
             commands.push(Command::Filter(FilterCommand::Set(text)));
         }
     });

@@ -1,21 +1,16 @@
 //! What the daemon found, and what is the matter where that is nothing.
 
 use common::{
-    Comparison, ExplorerCommand, Filter, FilterCounts, Leaf, NearestMiss, Order, Seed, Shortfall,
-    VertexTest, Volume,
+    ExplorerCommand, Filter, FilterCounts, FilterText, NearestMiss, Order, Seed, Shortfall, Volume,
 };
 use egui::{FontFamily, Label, RichText, Ui};
 
 use crate::command::{Command, FilterCommand, Switch};
 use crate::panel::widgets::row;
-use crate::settings::FilterSettings;
-use crate::settings::tree::{self, Source};
+use crate::settings::{FilterSettings, FilterSource};
 use crate::value::format;
 use crate::value::theme;
 use crate::world::World;
-
-/// How much larger than needed a region becomes that is widened for a path.
-const MARGIN: f64 = 1.02;
 
 /// Shows counts and, where nothing matches, why and what to do.
 pub(super) fn show(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
@@ -76,7 +71,7 @@ fn nothing_found(
         nearest(ui, world, (miss, conditions), commands);
     }
     ui.horizontal_wrapped(|ui| {
-        if !world.settings.filter.inverted
+        if !world.settings.filter.is_inverted()
             && ui.button("Invert").on_hover_text("Show the paths that are left out").clicked()
         {
             commands.push(Command::Filter(FilterCommand::Invert(Switch::On)));
@@ -135,7 +130,7 @@ fn explained(miss: &NearestMiss, conditions: &[String], settings: &FilterSetting
     for (i, failed) in miss.failed.iter().enumerate() {
         let number = failed.condition as usize;
         let what = match settings.source(number) {
-            Some(Source::Sphere(number)) => format!("sphere {}", number + 1),
+            Some(FilterSource::Sphere(number)) => format!("sphere {}", number + 1),
             _ => conditions.get(number).map_or_else(String::new, |text| format!("`{text}`")),
         };
         text.push_str(if i > 0 { ", and " } else { " " });
@@ -153,80 +148,39 @@ type Remedy = (String, &'static str, FilterCommand);
 fn remedies(settings: &FilterSettings, failed: &Shortfall) -> Vec<Remedy> {
     let drop = "Ask for this no longer";
     match settings.source(failed.condition as usize) {
-        Some(Source::Sphere(number)) => {
+        Some(FilterSource::Sphere(number)) => {
             let name = format!("sphere {}", number + 1);
-            let wider = failed.by.zip(settings.selectors.get(number)).map(|(by, sphere)| {
-                let [x, y, z, radius] = sphere.place;
-                let place = [x, y, z, (radius + by) * MARGIN];
+            let wider = failed.by.zip(settings.selectors().get(number)).and_then(|(by, sphere)| {
+                let (_, Volume::Sphere { centre, radius }) = sphere.selector().volume.widened(by)
+                else {
+                    return None;
+                };
+                let place = [centre.x, centre.y, centre.z, radius];
                 let tip = "Make it just large enough for the nearest path";
-                (format!("Widen {name}"), tip, FilterCommand::Move(number as u32, place))
+                Some((format!("Widen {name}"), tip, FilterCommand::Move(number as u32, place)))
             });
             let delete = (format!("Delete {name}"), drop, FilterCommand::Delete(number as u32));
             wider.into_iter().chain([delete]).collect()
         }
-        Some(Source::Text(number)) => {
-            let Ok(filter) = Filter::parse(&settings.text) else { return Vec::new() };
-            let leaf = tree::leaves(&filter).get(number).map(|leaf| (*leaf).clone());
+        Some(FilterSource::Text(number)) => {
+            let Ok(filter) = settings.text().tree() else { return Vec::new() };
+            let set = |filter: Filter| FilterCommand::Set(FilterText::from(&filter));
+            let leaf = filter.leaves().get(number).map(|leaf| (*leaf).clone());
             let wider = leaf.zip(failed.by).and_then(|(leaf, by)| {
-                let (label, wide) = widened(&leaf, by)?;
-                let text = tree::with_leaf(filter.clone(), number, &|_| wide.clone()).to_string();
+                let (label, wide) = leaf.widened(by)?;
+                let wider = filter.clone().with_leaf(number, |_| Some(wide));
                 let tip = "Ask for no more than the nearest path has";
-                Some((label.to_owned(), tip, FilterCommand::text(text)))
+                Some((label.to_owned(), tip, set(wider)))
             });
-            let text = tree::without_leaf(filter, number).to_string();
-            let without = ("Drop this condition".to_owned(), drop, FilterCommand::text(text));
+            let without = filter.clone().with_leaf(number, |_| None);
+            let without = ("Drop this condition".to_owned(), drop, set(without));
             wider.into_iter().chain([without]).collect()
         }
-        Some(Source::Kept(number)) => {
-            let Some(kept) = settings.kept.get(number) else { return Vec::new() };
+        Some(FilterSource::Kept(number)) => {
+            let Some(kept) = settings.kept().get(number) else { return Vec::new() };
             let off = FilterCommand::Use(kept.name.clone(), Switch::Off);
             vec![(format!("Switch off {}", kept.name), "A kept filter asks for this", off)]
         }
         None => Vec::new(),
-    }
-}
-
-/// The condition, widened by what a path misses, and what that is called.
-fn widened(leaf: &Leaf, by: f64) -> Option<(&'static str, Leaf)> {
-    match leaf.clone() {
-        Leaf::Vertex { place, test: VertexTest::Inside(volume) } => {
-            let test = VertexTest::Inside(grown(volume, by));
-            Some((name_of(volume), Leaf::Vertex { place, test }))
-        }
-        Leaf::Segment { place, volume } => {
-            Some((name_of(volume), Leaf::Segment { place, volume: grown(volume, by) }))
-        }
-        Leaf::Film { min, max } => {
-            let by = by * MARGIN;
-            let (min, max) = (min.map(|x| (x - by).max(0.0)), max.map(|x| (x + by).min(1.0)));
-            Some(("Widen the rectangle", Leaf::Film { min, max }))
-        }
-        Leaf::Number { attribute, comparison, value } => {
-            let by = if attribute.is_whole() { by } else { by * MARGIN };
-            let (comparison, value) = match comparison {
-                Comparison::AtLeast | Comparison::Greater => (Comparison::AtLeast, value - by),
-                Comparison::AtMost | Comparison::Less => (Comparison::AtMost, value + by),
-                Comparison::Equal | Comparison::NotEqual => return None,
-            };
-            Some(("Loosen the bound", Leaf::Number { attribute, comparison, value }))
-        }
-        _ => None,
-    }
-}
-
-fn name_of(volume: Volume) -> &'static str {
-    match volume {
-        Volume::Sphere { .. } => "Widen the sphere",
-        Volume::Box { .. } => "Widen the box",
-    }
-}
-
-/// The region, larger by `by` on every side.
-fn grown(volume: Volume, by: f64) -> Volume {
-    match volume {
-        Volume::Sphere { centre, radius } => {
-            Volume::Sphere { centre, radius: (radius + by) * MARGIN }
-        }
-        Volume::Box { min, max } => Volume::Box { min: min - by * MARGIN, max: max + by * MARGIN },
     }
 }

@@ -4,6 +4,7 @@ use egui::{Align, Button, Label, Layout, RichText, TextEdit, Ui};
 
 use crate::command::{FilterCommand, MOST_KEPT, Switch, kept_name};
 use crate::settings::KeptFilter;
+use crate::value::theme;
 use crate::world::World;
 
 /// Keeps filters.
@@ -21,12 +22,12 @@ impl Kept {
         filter: &mut impl FnMut(FilterCommand),
     ) {
         let settings = &world.settings.filter;
-        for kept in &settings.kept {
+        for kept in settings.kept() {
             line(ui, kept, filter);
         }
-        let any = !settings.text.is_empty() || !settings.selectors.is_empty();
+        let any = !settings.text().text().is_empty() || !settings.selectors().is_empty();
         if !any {
-            if settings.kept.is_empty() {
+            if settings.kept().is_empty() {
                 let text = "A filter can be kept under a name, and switched on again later.";
                 ui.add(Label::new(RichText::new(text).small().weak()).wrap());
             }
@@ -41,8 +42,8 @@ impl Kept {
             });
             let entered = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             let name = kept_name(&self.name);
-            let is_new = |name: &String| settings.kept.iter().all(|kept| kept.name != *name);
-            let full = settings.kept.len() >= MOST_KEPT && name.as_ref().is_some_and(is_new);
+            let is_new = |name: &String| settings.kept().iter().all(|kept| kept.name != *name);
+            let full = settings.kept().len() >= MOST_KEPT && name.as_ref().is_some_and(is_new);
             let keep = ui.add_enabled(name.is_some() && !full, Button::new("Keep"));
             let keep = keep
                 .on_hover_text("Keep text and spheres under this name")
@@ -64,7 +65,7 @@ fn line(ui: &mut Ui, kept: &KeptFilter, filter: &mut impl FnMut(FilterCommand)) 
     let name = || kept.name.clone();
     ui.horizontal(|ui| {
         let mut on = kept.on;
-        let tip = format!("Holds beside what is above\n{}", kept.text);
+        let tip = format!("Holds beside what is above\n{}", kept.text());
         if ui.checkbox(&mut on, "").on_hover_text(tip).changed() {
             filter(FilterCommand::Use(name(), Switch::to(on)));
         }
@@ -83,7 +84,16 @@ fn line(ui: &mut Ui, kept: &KeptFilter, filter: &mut impl FnMut(FilterCommand)) 
                 filter(FilterCommand::Load(name()));
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                ui.add(Label::new(&kept.name).truncate()).on_hover_text(&kept.text);
+                let name = RichText::new(&kept.name);
+                let (name, tip) = match kept.complaint() {
+                    Some(error) => {
+                        let color = theme::bad(ui.visuals().dark_mode);
+                        let tip = format!("Left out: {}\n{}", error.message, kept.text());
+                        (name.color(color).strikethrough(), tip)
+                    }
+                    None => (name, kept.text().to_string()),
+                };
+                ui.add(Label::new(name).truncate()).on_hover_text(tip);
             });
         });
     });

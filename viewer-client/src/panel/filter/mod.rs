@@ -1,11 +1,10 @@
 //! Which paths are shown: presets, the text, its tree, spheres, kept filters, and what was found.
 
-pub(super) mod complete;
 pub(crate) mod found;
 mod kept;
 mod text;
 
-use common::SelectorKind;
+use common::{Filter, FilterText, Leaf, SelectorKind};
 use egui::{Button, DragValue, Label, RichText, Ui};
 
 use super::widgets::{dot, toggle};
@@ -14,7 +13,7 @@ use crate::command::{Command, FilterCommand, kind_name};
 use crate::value::theme;
 use crate::world::World;
 
-pub(super) use text::vocabulary;
+pub(super) use text::filter_scene;
 
 /// Light path expressions that people ask for most.
 const PRESETS: [(&str, &str, &str); 5] = [
@@ -37,10 +36,9 @@ impl Panel for FilterPanel {
         let mut filter = |command| commands.push(Command::Filter(command));
         presets(ui, world, &mut filter);
         self.draft.ui(ui, world, &mut filter);
-        if is_likely_mistaken(&world.settings.filter.text) {
-            let text = "`RD` is two vertices, a reflection and then something diffuse; `<RD>` is \
-                        one vertex that is both.";
-            ui.add(Label::new(RichText::new(text).small().weak()).wrap());
+        let leaves = world.settings.filter.text().tree().map(Filter::leaves).unwrap_or_default();
+        if let Some(remark) = leaves.into_iter().find_map(Leaf::remark) {
+            ui.add(Label::new(RichText::new(remark).small().weak()).wrap());
         }
         builder::ui(ui, world, &mut filter);
         selectors(ui, world, &mut filter);
@@ -54,57 +52,36 @@ fn presets(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterCommand
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         for (name, text, meaning) in PRESETS {
-            let chosen = world.settings.filter.text == text;
+            let chosen = world.settings.filter.text().text() == text;
             let tip =
                 if text.is_empty() { meaning.to_owned() } else { format!("{meaning}: {text}") };
             if ui.add(Button::selectable(chosen, name)).on_hover_text(tip).clicked() {
-                filter(FilterCommand::text(text.to_owned()));
+                filter(FilterCommand::Set(FilterText::read(text)));
             }
         }
     });
-}
-
-/// True where an expression asks for a way of going on and a kind of scattering as two vertices, which
-/// people write who mean one.
-fn is_likely_mistaken(text: &str) -> bool {
-    let expressions = text.split('"').skip(1).step_by(2);
-    expressions.into_iter().any(|expression| {
-        let (mut bracketed, mut quoted) = (false, false);
-        let mut before = ' ';
-        expression.chars().any(|c| {
-            let mistaken = matches!(before, 'R' | 'T' | 'V') && matches!(c, 'D' | 'G' | 'S' | 's');
-            let counts = !bracketed && !quoted;
-            match c {
-                '\'' => quoted = !quoted,
-                '<' | '[' => bracketed = true,
-                '>' | ']' => bracketed = false,
-                _ => {}
-            }
-            before = c;
-            counts && mistaken
-        })
-    })
 }
 
 fn switches(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterCommand)) {
     let settings = &world.settings.filter;
     ui.horizontal_wrapped(|ui| {
         let tip = "Without it, all paths are shown";
-        if let Some(switch) = toggle(ui, "On", tip, !settings.off) {
+        if let Some(switch) = toggle(ui, "On", tip, !settings.is_off()) {
             filter(FilterCommand::Enable(switch));
         }
         let tip = "Show what text and spheres would leave out";
-        if let Some(switch) = toggle(ui, "Invert", tip, settings.inverted) {
+        if let Some(switch) = toggle(ui, "Invert", tip, settings.is_inverted()) {
             filter(FilterCommand::Invert(switch));
         }
         let clear = Button::new("Clear");
         let tip = "Show all paths, and forget text and spheres";
-        let any = !settings.wanted().is_empty() || settings.off;
+        let any =
+            !settings.whole().wants_all() || settings.is_off() || settings.complaint().is_some();
         if ui.add_enabled(any, clear).on_hover_text(tip).clicked() {
             filter(FilterCommand::Clear);
         }
         if ui.button("Copy").on_hover_text("Copy the whole filter as text").clicked() {
-            ui.ctx().copy_text(settings.wanted());
+            ui.ctx().copy_text(settings.whole().text().to_owned());
         }
     });
 }
@@ -112,7 +89,7 @@ fn switches(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterComman
 /// The spheres, one a line.
 fn selectors(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterCommand)) {
     let settings = &world.settings.filter;
-    if settings.selectors.is_empty() {
+    if settings.selectors().is_empty() {
         let [start, end, any, all] =
             world.settings.layout.keys.selectors().map(|(key, _)| key.name());
         let text = format!(
@@ -122,11 +99,11 @@ fn selectors(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterComma
         ui.add(Label::new(RichText::new(text).small().weak()).wrap());
         return;
     }
-    for (number, sphere) in settings.selectors.iter().enumerate() {
+    for (number, sphere) in settings.selectors().iter().enumerate() {
         let number32 = number as u32;
         ui.horizontal(|ui| {
             dot(ui, theme::selector_color(sphere.kind));
-            let chosen = settings.chosen == Some(number);
+            let chosen = settings.chosen() == Some(number);
             let name = format!("{} {}", kind_name(sphere.kind), number + 1);
             let button = Button::selectable(chosen, name);
             if ui.add(button).on_hover_text(meaning(sphere.kind)).clicked() {

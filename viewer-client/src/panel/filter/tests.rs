@@ -14,6 +14,10 @@ use crate::panel::tests::{Stage, shows};
 use crate::source::model::Model;
 use crate::synthetic::{mesh, welcome};
 
+fn set(text: &str) -> FilterCommand {
+    FilterCommand::Set(FilterText::read(text))
+}
+
 /// The panel before a scene with names.
 fn stage() -> Stage {
     let mut stage = Stage::new(FilterPanel::default());
@@ -45,7 +49,7 @@ fn fruitless() -> Stage {
     let mut stage = stage();
     let sphere = Sphere { kind: SelectorKind::Any, place: [0.0, 1.0, 0.0, 0.5] };
     stage.settings.filter.apply(&FilterCommand::Add(sphere));
-    stage.settings.filter.apply(&FilterCommand::Set("edges >= 4 and dwell > 2".to_owned()));
+    stage.settings.filter.apply(&set("edges >= 4 and dwell > 2"));
     let path = PathId { chain: ChainId(3), epoch: 0, step: 77 };
     let failed =
         vec![Shortfall { condition: 0, by: Some(0.25) }, Shortfall { condition: 1, by: Some(2.0) }];
@@ -73,7 +77,7 @@ fn an_empty_result_explains_the_nearest_miss_and_offers_what_to_do() {
     }
     let sphere = |radius: f64| Command::Filter(FilterCommand::Move(0, [0.0, 1.0, 0.0, radius]));
     assert_eq!(click(&mut harness, "Widen sphere 1"), [sphere(0.765)], "0.75, and a little more");
-    let text = |text: &str| Command::Filter(FilterCommand::Set(text.to_owned()));
+    let text = |text: &str| Command::Filter(set(text));
     let loosened = text("edges >= 2 and dwell > 2");
     assert_eq!(click(&mut harness, "Loosen the bound"), [loosened], "as the nearest has");
     assert_eq!(click(&mut harness, "Drop this condition"), [text("dwell > 2")], "without it");
@@ -92,23 +96,23 @@ fn an_empty_result_explains_the_nearest_miss_and_offers_what_to_do() {
 #[test]
 fn what_is_wanted_follows_every_switch() {
     let mut filter = crate::settings::FilterSettings::default();
-    assert_eq!(filter.wanted(), "", "all paths");
+    assert_eq!(filter.whole().text(), "", "all paths");
     filter.apply(&FilterCommand::Invert(Switch::On));
-    assert_eq!(filter.wanted(), "", "there is nothing to invert");
-    filter.apply(&FilterCommand::Set("edges == 2".to_owned()));
-    assert_eq!(filter.wanted(), "not edges == 2");
+    assert_eq!(filter.whole().text(), "", "there is nothing to invert");
+    filter.apply(&set("edges == 2"));
+    assert_eq!(filter.whole().text(), "not edges == 2");
     filter.apply(&FilterCommand::Keep("longer".to_owned()));
     filter.apply(&FilterCommand::Clear);
-    assert_eq!(filter.wanted(), "", "what is kept does not hold by itself");
+    assert_eq!(filter.whole().text(), "", "what is kept does not hold by itself");
     filter.apply(&FilterCommand::Use("longer".to_owned(), Switch::On));
-    assert_eq!(filter.wanted(), "not edges == 2", "now it does");
-    filter.apply(&FilterCommand::Set("dwell > 3".to_owned()));
+    assert_eq!(filter.whole().text(), "not edges == 2", "now it does");
+    filter.apply(&set("dwell > 3"));
     filter.apply(&FilterCommand::Reverse("longer".to_owned(), Switch::Toggle));
-    assert_eq!(filter.wanted(), "dwell > 3 and edges == 2", "beside the text, turned round");
+    assert_eq!(filter.whole().text(), "dwell > 3 and edges == 2", "beside the text, turned round");
     filter.apply(&FilterCommand::Enable(Switch::Off));
-    assert_eq!(filter.wanted(), "", "switched off");
+    assert_eq!(filter.whole().text(), "", "switched off");
     filter.apply(&FilterCommand::Load("longer".to_owned()));
-    assert_eq!((filter.text.as_str(), filter.wanted().as_str()), ("edges == 2", "edges == 2"));
+    assert_eq!((filter.text().text(), filter.whole().text()), ("edges == 2", "edges == 2"));
     for (name, text, _) in PRESETS {
         assert!(Filter::parse(text).is_ok(), "{name}");
     }
@@ -138,7 +142,7 @@ fn words_and_names_are_completed_by_tab() {
     press(&mut harness, Key::ArrowDown);
     press(&mut harness, Key::Tab);
     assert_eq!(press(&mut harness, Key::Escape), [], "what is offered next is sent away");
-    let set = FilterCommand::Set("any on material \"lamp\"".to_owned());
+    let set = set("any on material \"wall\"");
     // It is asked for in every frame until it is done.
     let said = press(&mut harness, Key::Enter);
     assert_eq!(said.first(), Some(&Command::Filter(set)), "Enter sets it");
@@ -153,24 +157,13 @@ fn a_mistake_is_told_with_its_place_and_changes_nothing() {
     assert!(shows(&harness, "found `spere`"), "what");
     assert_eq!(press(&mut harness, Key::Enter), [], "no filter");
     press(&mut harness, Key::Escape);
-    assert!(shows(&harness, "Character"), "first what is offered goes");
-    press(&mut harness, Key::Escape);
     assert!(!shows(&harness, "Character"), "taken back");
 }
 
 #[test]
 fn two_vertices_that_were_meant_to_be_one_are_pointed_out() {
-    for (text, mistaken) in [
-        ("lpe \"CRDL\"", true),
-        ("lpe \"C<RD>L\"", false),
-        ("lpe \"C<TS'TDX'>.*L\"", false),
-        ("lpe \"CDS+L\" and any on material \"TD\"", true),
-        ("edges == 2", false),
-    ] {
-        assert_eq!(is_likely_mistaken(text), mistaken, "{text}");
-    }
     let mut stage = stage();
-    stage.settings.filter.text = "lpe \"CRDL\"".to_owned();
+    stage.settings.filter.apply(&set("lpe \"CRDL\""));
     let mut harness = stage.harness();
     harness.run_steps(3);
     assert!(shows(&harness, "`<RD>` is one vertex"), "a hint");
@@ -179,7 +172,7 @@ fn two_vertices_that_were_meant_to_be_one_are_pointed_out() {
 #[test]
 fn filters_are_kept_used_turned_written_and_forgotten() {
     let mut stage = stage();
-    stage.settings.filter.apply(&FilterCommand::Set("edges >= 4".to_owned()));
+    stage.settings.filter.apply(&set("edges >= 4"));
     let mut harness = stage.harness();
     harness.run_steps(3);
     harness.get_by_label("Name of the filter").focus();
@@ -196,7 +189,7 @@ fn filters_are_kept_used_turned_written_and_forgotten() {
     harness.get_all_by_label("not").last().expect("its not").click();
     assert_eq!(obey(&mut harness), command(FilterCommand::Reverse(name(), Switch::Toggle)));
     assert_eq!(click(&mut harness, "Edit"), command(FilterCommand::Load(name())));
-    assert_eq!(harness.state().settings.filter.wanted(), "not edges >= 4", "turned round");
+    assert_eq!(harness.state().settings.filter.whole().text(), "not edges >= 4", "turned round");
     harness.get_all_by_label("×").last().expect("its cross").click();
     assert_eq!(obey(&mut harness), command(FilterCommand::Forget(name())));
 }

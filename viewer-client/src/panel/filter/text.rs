@@ -3,14 +3,14 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use common::{Filter, FilterError, Named, Rgb};
+use common::{Completion, FilterError, FilterScene, FilterText, SceneFrame, SceneMesh, complete};
 use egui::text::{CCursor, CCursorRange, LayoutJob, TextFormat};
 use egui::{
     Button, EventFilter, FontId, Galley, Id, Key, Modifiers, Popup, PopupCloseBehavior, RectAlign,
     RichText, Stroke, TextBuffer, TextEdit, Ui,
 };
+use glam::DVec3;
 
-use super::complete::{self, Completion, Vocabulary};
 use crate::command::FilterCommand;
 use crate::value::theme;
 use crate::world::World;
@@ -26,11 +26,15 @@ const KEYS: EventFilter =
 #[derive(Debug, Default)]
 pub(super) struct Draft {
     text: String,
-    of: String,
+    /// What was read of it.
+    read: FilterText,
+    of: FilterText,
     /// The choice that Tab takes.
     line: usize,
     /// The choices were sent away until more is written.
     dismissed: bool,
+    /// What may come at a byte of the text.
+    offered: Option<(usize, Completion)>,
 }
 
 impl Draft {
@@ -40,21 +44,22 @@ impl Draft {
         world: &World<'_>,
         filter: &mut impl FnMut(FilterCommand),
     ) {
-        let current = &world.settings.filter.text;
+        let current = world.settings.filter.text();
         if self.of != *current {
             self.of.clone_from(current);
-            self.text.clone_from(current);
+            self.text = current.to_string();
         }
         let id = Id::unique("text of the filter");
         let completion = self.offers(ui, id, world);
         if let Some(completion) = &completion {
             self.choose(ui, id, completion);
         }
-        let problem = Filter::parse(&self.text).err();
-        let fault = problem.as_ref().map(|problem| problem.span.clone());
-        let before = self.text.clone();
+        self.follow();
+        let read = self.read.clone();
         let mut layouter = |ui: &Ui, text: &dyn TextBuffer, width: f32| {
-            underlined(ui, text.as_str(), fault.clone(), width)
+            // While it is edited, it is ahead of what was read.
+            let fault = read.error().filter(|_| read.text() == text.as_str());
+            underlined(ui, text.as_str(), fault.map(|fault| &fault.span), width)
         };
         let edit = TextEdit::multiline(&mut self.text)
             .id(id)
@@ -71,32 +76,41 @@ impl Draft {
         response.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Text of the filter")
         });
-        if self.text != before {
+        if self.text != self.read.text() {
             (self.line, self.dismissed) = (0, false);
         }
         let (enter, escape) = ui.input(|i| (i.key_pressed(Key::Enter), i.key_pressed(Key::Escape)));
         let over_offers = self.show_offers(ui, &response, completion);
+        self.follow();
         if response.has_focus() && escape {
-            self.text.clone_from(current);
+            self.text = current.to_string();
             response.surrender_focus();
             return;
         }
-        if self.text == *current {
+        if self.text == current.text() {
+            misfit(ui, world);
             return;
         }
-        match Filter::parse(&self.text) {
-            Err(error) => complaint(ui, &error, &self.text),
-            Ok(_) if (response.lost_focus() && !over_offers) || (response.has_focus() && enter) => {
-                filter(FilterCommand::text(self.text.trim().to_owned()));
-            }
-            Ok(_) => {
+        let is_done = (response.lost_focus() && !over_offers) || (response.has_focus() && enter);
+        match self.read.error() {
+            Some(error) => complaint(ui, error, &self.text),
+            None if is_done => filter(FilterCommand::Set(FilterText::read(self.text.trim()))),
+            None => {
                 ui.label(RichText::new("Enter sets it").small().weak());
             }
         }
     }
 
+    /// Reads what was written since.
+    fn follow(&mut self) {
+        if self.read.text() != self.text {
+            self.read = FilterText::read(self.text.as_str());
+            self.offered = None;
+        }
+    }
+
     /// What may come where the cursor is, if something is being written.
-    fn offers(&self, ui: &Ui, id: Id, world: &World<'_>) -> Option<Completion> {
+    fn offers(&mut self, ui: &Ui, id: Id, world: &World<'_>) -> Option<Completion> {
         if self.dismissed || !ui.memory(|memory| memory.has_focus(id)) {
             return None;
         }
@@ -106,8 +120,11 @@ impl Draft {
             return None;
         }
         let byte = byte_of(&self.text, cursor.primary.index.0);
-        let found = complete::complete(&self.text, byte, &vocabulary(world));
-        (!found.choices.is_empty()).then_some(found)
+        let offered = self.offered.take().filter(|(at, _)| *at == byte);
+        let offered =
+            offered.unwrap_or_else(|| (byte, complete(&self.text, byte, &filter_scene(world))));
+        let (_, found) = self.offered.insert(offered);
+        (!found.choices.is_empty()).then(|| found.clone())
     }
 
     /// Moves among the choices, takes one, or sends them away.
@@ -125,17 +142,9 @@ impl Draft {
 
     /// Writes a choice into the text, and puts the cursor behind it.
     fn take(&mut self, ui: &Ui, id: Id, completion: &Completion, line: usize) {
-        let Some(choice) = completion.choices.get(line) else { return };
-        let Range { start, end } = completion.range;
-        let (Some(before), Some(after)) = (self.text.get(..start), self.text.get(end..)) else {
-            return;
-        };
-        let word = choice.text.ends_with(|c: char| c.is_alphanumeric() || c == '"' || c == '=');
-        let in_quotes = before.matches('"').count() % 2 == 1 && !choice.text.starts_with('"');
-        let blank = if word && !in_quotes && !after.starts_with(' ') { " " } else { "" };
-        let written = format!("{before}{}{blank}", choice.text);
-        let cursor = written.chars().count();
-        self.text = format!("{written}{after}");
+        let Some((text, cursor)) = completion.taken(&self.text, line) else { return };
+        let cursor = text[..cursor].chars().count();
+        self.text = text;
         self.line = 0;
         let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
         state.cursor.set_char_range(Some(CCursorRange::one(CCursor::new(cursor))));
@@ -162,7 +171,7 @@ impl Draft {
                 ui.spacing_mut().item_spacing.y = 1.0;
                 for (number, choice) in completion.choices.iter().take(MOST).enumerate() {
                     let meaning = RichText::new(choice.meaning).small().weak();
-                    let text = RichText::new(&choice.text).monospace();
+                    let text = RichText::new(choice.text.trim_end()).monospace();
                     let button = Button::selectable(number == self.line, text).right_text(meaning);
                     // The text keeps the focus.
                     if ui.add(button).is_pointer_button_down_on() {
@@ -189,6 +198,17 @@ fn key_for_choices(ui: &Ui) -> Option<Key> {
     ui.input_mut(|input| keys.into_iter().find(|key| input.consume_key(Modifiers::NONE, *key)))
 }
 
+/// Why the text in force asks for nothing on this scene.
+fn misfit(ui: &mut Ui, world: &World<'_>) {
+    if let Some(error) = world.settings.filter.complaint() {
+        let color = theme::bad(ui.visuals().dark_mode);
+        let text = format!("Left out: {}", error.message);
+        let tip = "The text stays, and holds again on a scene that has what it names";
+        let label = egui::Label::new(RichText::new(text).small().color(color)).wrap();
+        ui.add(label).on_hover_text(tip);
+    }
+}
+
 /// What is wrong, and where.
 fn complaint(ui: &mut Ui, error: &FilterError, text: &str) {
     let color = theme::bad(ui.visuals().dark_mode);
@@ -198,7 +218,7 @@ fn complaint(ui: &mut Ui, error: &FilterError, text: &str) {
 }
 
 /// The text with a line below what is at fault, also where that is its end.
-fn underlined(ui: &Ui, text: &str, fault: Option<Range<usize>>, width: f32) -> Arc<Galley> {
+fn underlined(ui: &Ui, text: &str, fault: Option<&Range<usize>>, width: f32) -> Arc<Galley> {
     let format = |stroke| TextFormat {
         underline: stroke,
         ..TextFormat::simple(FontId::monospace(12.0), ui.visuals().text_color())
@@ -206,21 +226,16 @@ fn underlined(ui: &Ui, text: &str, fault: Option<Range<usize>>, width: f32) -> A
     let (plain, bad) = (format(Stroke::NONE), format(Stroke::new(2.0, theme::BAD)));
     let mut job = LayoutJob::default();
     job.wrap.max_width = width;
-    let fault = fault.unwrap_or(text.len()..text.len());
-    let start = text.floor_char_boundary(fault.start.min(text.len()));
-    // What ends too early is at fault where it ends: its last letter is marked.
-    let start = if start == text.len() && fault.start == fault.end && fault.end > 0 {
-        text[..start].trim_end().char_indices().next_back().map_or(start, |(i, _)| i)
-    } else {
-        start
-    };
-    let end = text.ceil_char_boundary(fault.end.clamp(start, text.len()));
-    let is_fault = Filter::parse(text).is_err();
-    for (part, format) in [
-        (&text[..start], &plain),
-        (&text[start..end], if is_fault { &bad } else { &plain }),
-        (&text[end..], &plain),
-    ] {
+    let [start, end] = fault.map_or([text.len(); 2], |fault| {
+        let start = text.floor_char_boundary(fault.start);
+        // What ends too early is at fault where it ends: its last letter is marked.
+        let last = text.trim_end().char_indices().next_back().map_or(0, |(i, _)| i);
+        let start = if start == text.len() { last } else { start };
+        [start, text.ceil_char_boundary(fault.end.clamp(start, text.len()))]
+    });
+    for (part, format) in
+        [(&text[..start], &plain), (&text[start..end], &bad), (&text[end..], &plain)]
+    {
         if !part.is_empty() {
             job.append(part, 0.0, format.clone());
         }
@@ -233,33 +248,10 @@ fn byte_of(text: &str, character: usize) -> usize {
     text.char_indices().nth(character).map_or(text.len(), |(byte, _)| byte)
 }
 
-/// The names that the scene has, as far as they have come.
-pub(in crate::panel) fn vocabulary(world: &World<'_>) -> Vocabulary {
+/// What filters may ask for of the scene, as far as it has come.
+pub(in crate::panel) fn filter_scene(world: &World<'_>) -> FilterScene {
     let names = world.names();
-    let Some(mesh) = names.mesh else {
-        return Vocabulary { strategies: names.strategies.to_vec(), ..Vocabulary::default() };
-    };
-    let mut objects: Vec<String> = mesh.objects.iter().map(|o| o.name.clone()).collect();
-    objects.sort_unstable();
-    objects.dedup();
-    objects.retain(|name| !name.is_empty());
-    let materials = mesh.materials.iter();
-    let lights = materials.clone().filter(|m| m.emission != Rgb::BLACK);
-    Vocabulary {
-        objects,
-        materials: materials.map(|m| m.name.clone()).collect(),
-        lights: lights.map(|m| m.name.clone()).collect(),
-        strategies: names.strategies.to_vec(),
-    }
-}
-
-impl Vocabulary {
-    /// The names of a kind.
-    pub(in crate::panel) fn named(&self, kind: Named) -> &[String] {
-        match kind {
-            Named::Object => &self.objects,
-            Named::Material => &self.materials,
-            Named::Light => &self.lights,
-        }
-    }
+    let frame = names.frame.unwrap_or(SceneFrame { centre: DVec3::ZERO, scale: 1.0, light: 1.0 });
+    let none = SceneMesh::default();
+    FilterScene::new(frame, names.mesh.unwrap_or(&none), names.strategies.to_vec())
 }

@@ -139,7 +139,7 @@ impl FrameState {
             (Some(corner), Some(p)) => {
                 Some(region::pixels([width, height], corner, placement.nearest(p)))
             }
-            _ => region::region_of(&world.settings.filter.text),
+            _ => region::region_of(world.settings.filter.text()),
         };
         if let Some(region) = chosen {
             outline(&painter, placement.on_screen(region).expand(1.0));
@@ -196,7 +196,7 @@ impl FrameState {
         };
         if let Some((from, to)) = pixels {
             let region = region::pixels(world.film.size(), from, to);
-            let text = region::with_region(&world.settings.filter.text, Some(region));
+            let text = region::with_region(world.settings.filter.text(), Some(region));
             commands.push(Command::Filter(FilterCommand::Set(text)));
         }
     }

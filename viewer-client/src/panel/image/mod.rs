@@ -131,7 +131,7 @@ impl ImagePanel {
 
 /// Which part of the image the paths come from, and the way back to all of it.
 fn region_line(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
-    let Some([u0, v0, u1, v1]) = region::region_of(&world.settings.filter.text) else { return };
+    let Some([u0, v0, u1, v1]) = region::region_of(world.settings.filter.text()) else { return };
     let [width, height] = world.film.size().map(|side| side as f64);
     ui.horizontal(|ui| {
         let columns = ((u1 - u0) * width).round().max(1.0);
@@ -139,8 +139,8 @@ fn region_line(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
         ui.label(format!("Paths to {columns:.0} × {rows:.0} pixels"))
             .on_hover_text("The filter wants paths that reached this part of the image only");
         if ui.button("All").on_hover_text("Paths to the whole image").clicked() {
-            let text = region::with_region(&world.settings.filter.text, None);
-            commands.push(Command::Filter(FilterCommand::text(text)));
+            let text = region::with_region(world.settings.filter.text(), None);
+            commands.push(Command::Filter(FilterCommand::Set(text)));
         }
     });
 }

@@ -1,6 +1,6 @@
 //! Sections that fold, move, explain and are copied; the bar at the foot; what is copied.
 
-use common::{Attendee, Author, ChainState, Notice, Presence, Role};
+use common::{Attendee, Author, ChainState, FilterText, Notice, Presence, Role};
 use egui::accesskit::Role as WidgetRole;
 use egui::{Modifiers, PointerButton};
 
@@ -71,7 +71,7 @@ fn every_part_has_a_text_for_the_clipboard() {
     stage.status.welcome(welcome());
     stage.status.link = LinkState::Connected;
     stage.status.statistics(diagnosed());
-    stage.settings.filter.apply(&FilterCommand::Set("edges >= 3".to_owned()));
+    stage.settings.filter.apply(&FilterCommand::Set(FilterText::read("edges >= 3")));
     let paths = batch(&[&[[1.0, 2.0, 3.0], [4.0, 6.0, 3.0]]]);
     let mut reader = paths.reader();
     let path = reader.next().expect("a path");

@@ -1,12 +1,12 @@
 //! The image, its comparison and its maps.
 
-use common::FilmTile;
+use common::{FilmTile, FilterText};
 use egui::accesskit::Role as WidgetRole;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::{Stage, diagnosed, shows};
-use crate::command::{Command, ImageCommand};
+use crate::command::{Command, FilterCommand, ImageCommand};
 use crate::imaging::Reference;
 use crate::panel::hover::{self, Pointed};
 use crate::panel::{Panel, image};
@@ -88,7 +88,8 @@ pub(super) fn image_stage(compared: bool) -> Stage {
 #[test]
 fn a_pixel_or_a_rectangle_of_the_image_becomes_the_filter() {
     let mut stage = image_stage(false);
-    stage.settings.filter.text = "edges >= 3".to_owned();
+    let set = |text| FilterCommand::Set(FilterText::read(text));
+    stage.settings.filter.apply(&set("edges >= 3"));
     let mut harness = stage.harness();
     harness.run();
     let film = harness.get_by_role_and_label(WidgetRole::Image, "Film").rect();
@@ -98,7 +99,7 @@ fn a_pixel_or_a_rectangle_of_the_image_becomes_the_filter() {
     let filter = |harness: &mut Harness<'_, Stage>| {
         let said = harness.state_mut().said.drain(..).collect::<Vec<_>>();
         match said.as_slice() {
-            [Command::Filter(crate::command::FilterCommand::Set(text))] => text.clone(),
+            [Command::Filter(FilterCommand::Set(text))] => text.clone(),
             other => panic!("{other:?} instead of a filter"),
         }
     };
@@ -113,7 +114,7 @@ fn a_pixel_or_a_rectangle_of_the_image_becomes_the_filter() {
     let [u0, v0, u1, v1] = crate::settings::region::region_of(&text).expect("a rectangle");
     assert!((u0 - 0.25).abs() < 1e-7 && (v0 - 5.0 / 30.0).abs() < 1e-7, "{text}");
     assert!((u1 - 11.0 / 40.0).abs() < 1e-6 && (v1 - 6.0 / 30.0).abs() < 1e-6, "{text}");
-    assert!(text.contains("edges >= 3"), "the other condition stays: {text}");
+    assert!(text.text().contains("edges >= 3"), "the other condition stays: {text}");
     harness.drag_at(at(4.5, 3.5));
     harness.run_steps(1);
     harness.hover_at(at(20.5, 10.5));
@@ -126,12 +127,12 @@ fn a_pixel_or_a_rectangle_of_the_image_becomes_the_filter() {
     for (value, expected) in [u0, v0, u1, v1].into_iter().zip(expected) {
         assert!((value - expected).abs() < 1e-6, "{text}");
     }
-    harness.state_mut().settings.filter.text = text;
+    harness.state_mut().settings.filter.apply(&FilterCommand::Set(text));
     harness.run();
     assert!(shows(&harness, "Paths to 17 × 8 pixels"), "what is wanted");
     harness.get_by_label("All").click();
     harness.run();
-    assert_eq!(filter(&mut harness), "edges >= 3", "and back");
+    assert_eq!(filter(&mut harness).text(), "edges >= 3", "and back");
 }
 
 #[test]

@@ -181,8 +181,7 @@ mod tests {
         for handles in Handles::ALL {
             let mut stage = Stage::new(Viewport::default());
             let sphere = Sphere { kind: SelectorKind::Any, place: [0.0, 0.0, 0.0, 30.0] };
-            stage.settings.filter.selectors = vec![sphere];
-            stage.settings.filter.chosen = Some(0);
+            stage.settings.filter.apply(&FilterCommand::Add(sphere));
             stage.settings.scene.handles = handles;
             let said = pull(stage, 30.0);
             let places: Vec<_> = said

@@ -90,7 +90,7 @@ fn nothing_yet(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
 fn nothing_found(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
     let Some(counts) = world.filter_counts() else { return };
     let is_refused = world.status.filter.as_ref().is_some_and(|reply| reply.error.is_some());
-    let is_filtered = !world.settings.filter.wanted().is_empty() && !is_refused;
+    let is_filtered = !world.settings.filter.whole().wants_all() && !is_refused;
     if is_filtered && world.store.matched() == 0 && counts.matched == 0 && counts.seen > 0 {
         let seen = format::count(counts.seen as f64);
         let lines = vec![

@@ -40,7 +40,7 @@ pub(super) fn interact(
         push(FilterCommand::Choose(number as u32));
         return true;
     }
-    let chosen = settings.chosen.and_then(|n| settings.selectors.get(n).map(|s| (n, s)));
+    let chosen = settings.chosen().and_then(|n| settings.selectors().get(n).map(|s| (n, s)));
     let Some((number, sphere)) = chosen else { return false };
     if let Some(moved) = hold(world).pull(ui, (response, projector), ball_of(sphere, world)) {
         push(FilterCommand::Move(number as u32, place_of(moved, world)));
@@ -90,7 +90,7 @@ fn under_cursor(projector: &Projector, place: Pos2, world: &World<'_>) -> Ball {
 
 /// The selector whose middle is under the cursor.
 fn centre_at(projector: &Projector, place: Pos2, world: &World<'_>) -> Option<usize> {
-    world.settings.filter.selectors.iter().position(|sphere| {
+    world.settings.filter.selectors().iter().position(|sphere| {
         let seen = projector.point(ball_of(sphere, world).centre);
         seen.is_some_and(|centre| centre.distance(place) <= REACH)
     })
@@ -99,11 +99,11 @@ fn centre_at(projector: &Projector, place: Pos2, world: &World<'_>) -> Option<us
 /// Draws every selector, and the handles of the chosen one.
 pub(super) fn paint(painter: &Painter, projector: &Projector, world: &World<'_>) {
     let settings = &world.settings.filter;
-    let faint = if settings.off { 0.35 } else { 1.0 };
-    for (number, sphere) in settings.selectors.iter().enumerate() {
+    let faint = if settings.is_off() { 0.35 } else { 1.0 };
+    for (number, sphere) in settings.selectors().iter().enumerate() {
         let ball = ball_of(sphere, world);
         let color = theme::selector_color(sphere.kind).gamma_multiply(faint);
-        let chosen = settings.chosen == Some(number);
+        let chosen = settings.chosen() == Some(number);
         let width = if chosen { 2.0 } else { 1.2 };
         for [u, v] in [[Vec3::X, Vec3::Y], [Vec3::Y, Vec3::Z], [Vec3::Z, Vec3::X]] {
             circle(painter, projector, ball, [u, v], Stroke::new(width, color));
