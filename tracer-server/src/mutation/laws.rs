@@ -320,7 +320,7 @@ fn wrong_multi_chain_perturbations_are_found() {
 fn wrong_primary_mutations_are_found() {
     let (room, glass) = (specular_room().build(), floor_through_glass().build());
     for mutant in mutants::of_primary(Primary::default()) {
-        let (scene, samples) = if mutant.needs_glass { (&glass, 100_000) } else { (&room, 30_000) };
+        let (scene, samples) = if mutant.needs_glass { (&glass, 100_000) } else { (&room, 60_000) };
         assert_found(&mutant, scene, Test::Steps(3), samples);
     }
 }
