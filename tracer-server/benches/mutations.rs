@@ -92,7 +92,6 @@ fn measure(
         threads: 1,
         strategies: *options,
         bootstrap_samples: 1 << 16,
-        precision: 0.003,
     };
     let mut ensemble = Ensemble::new(scene, &settings, |_| ());
     ensemble.advance(scene, STEPS, None);

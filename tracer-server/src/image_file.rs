@@ -4,8 +4,8 @@ use std::path::Path;
 
 use common::Rgb;
 use exr::prelude::{
-    AttributeValue, Encoding, Image, Layer, LayerAttributes, SpecificChannels, Text, Vec2,
-    WritableImage as _, read_first_rgba_layer_from_file,
+    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes,
+    Text, Vec2, WritableImage as _, read_first_rgba_layer_from_file,
 };
 use host::file::{FileError, Output, Place};
 use image::{ImageBuffer, ImageFormat, Rgb as Pixel8};
@@ -55,6 +55,15 @@ pub enum Format {
     Png,
 }
 
+/// One more number for every pixel of an image.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plane {
+    /// Its name, such as `error`: the channel is `error.Y`.
+    pub name: &'static str,
+    /// Row by row from the top.
+    pub values: Vec<f32>,
+}
+
 /// Where an image is to go and in what format, known before there is one.
 #[derive(Clone, Debug)]
 pub struct Destination {
@@ -87,11 +96,16 @@ impl Destination {
         self.place.is_stdout()
     }
 
-    /// Puts `image` there. `metadata` goes into EXR headers.
-    pub fn write(&self, image: &Film, metadata: &[(String, String)]) -> Result<(), ImageError> {
+    /// Puts `image` there. `planes` and `metadata` go into EXR files only.
+    pub fn write(
+        &self,
+        image: &Film,
+        planes: &[Plane],
+        metadata: &[(String, String)],
+    ) -> Result<(), ImageError> {
         let file = || self.path().display().to_string();
         self.place.write(|output| match self.format {
-            Format::Exr => write_exr(output, image, metadata)
+            Format::Exr => write_exr(output, (image, planes), metadata)
                 .map_err(|source| ImageError::Exr { file: file(), source }),
             Format::Png => {
                 write_png(output, image).map_err(|source| ImageError::Png { file: file(), source })
@@ -114,7 +128,7 @@ impl Format {
 
 /// Writes `image` in the format of the file's name. `metadata` goes into EXR headers.
 pub fn write(path: &Path, image: &Film, metadata: &[(String, String)]) -> Result<(), ImageError> {
-    Destination::find(path)?.write(image, metadata)
+    Destination::find(path)?.write(image, &[], metadata)
 }
 
 /// Text of any script, in UTF-8. What readers of old expect, Latin-1, is the same for ASCII.
@@ -124,19 +138,26 @@ fn exr_text(text: &str) -> Text {
 
 fn write_exr(
     output: &mut Output,
-    image: &Film,
+    (image, planes): (&Film, &[Plane]),
     metadata: &[(String, String)],
 ) -> Result<(), exr::error::Error> {
-    let (width, height) = (image.width() as usize, image.height() as usize);
-    let channels = SpecificChannels::rgb(|Vec2(x, y): Vec2<usize>| {
-        <(f32, f32, f32)>::from(image.pixels()[y * width + x].to_f32())
-    });
+    let size = (image.width() as usize, image.height() as usize);
+    let color = |(index, name): (usize, &str)| {
+        let values = image.pixels().iter().map(|pixel| pixel.to_f32()[index]).collect();
+        AnyChannel::new(name, FlatSamples::F32(values))
+    };
+    let plane = |plane: &Plane| {
+        let name = format!("{}.Y", plane.name);
+        AnyChannel::new(name.as_str(), FlatSamples::F32(plane.values.clone()))
+    };
+    let colors = ["R", "G", "B"].into_iter().enumerate().map(color);
+    let channels = AnyChannels::sort(colors.chain(planes.iter().map(plane)).collect());
     let mut attributes = LayerAttributes::named("");
     attributes.software_name = Some(Text::from("Lvis"));
     for (key, value) in metadata {
         attributes.other.insert(exr_text(key), AttributeValue::Text(exr_text(value)));
     }
-    let layer = Layer::new((width, height), attributes, Encoding::SMALL_LOSSLESS, channels);
+    let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
     Image::from_layer(layer).write().to_buffered(output)
 }
 
@@ -203,12 +224,17 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("gradient.exr");
         let metadata = [("lvis.seed".to_owned(), "7".to_owned())];
-        write(&path, &gradient(), &metadata).expect("an EXR file is written");
+        let errors = Plane { name: "error", values: (0..15).map(|i| i as f32).collect() };
+        let place = Destination::find(&path).expect("a place");
+        place.write(&gradient(), &[errors], &metadata).expect("an EXR file is written");
         let back = read_exr(&path).expect("and read");
         for (a, b) in back.pixels().iter().zip(gradient().pixels()) {
             assert_eq!(a.to_f32(), b.to_f32(), "pixels survive");
         }
         let meta = exr::meta::MetaData::read_from_file(&path, false).expect("the header is read");
+        let channels = &meta.headers[0].channels.list;
+        let names: Vec<String> = channels.iter().map(|c| c.name.to_string()).collect();
+        assert_eq!(names, ["B", "G", "R", "error.Y"], "channels");
         let seed = meta.headers[0].own_attributes.other.get(&Text::from("lvis.seed"));
         assert_eq!(seed, Some(&AttributeValue::Text(Text::from("7"))), "metadata survives");
     }

@@ -4,6 +4,7 @@
 // not mean.
 #![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 
+pub mod base;
 pub mod bsdf;
 pub mod chain;
 pub mod cli;
@@ -19,9 +20,11 @@ pub mod mutation;
 pub mod parallel;
 pub mod path;
 pub mod render;
+pub mod replicate;
 pub mod scene;
 pub mod service;
 pub mod steering;
+pub mod target;
 pub mod trade;
 pub mod verify;
 

@@ -77,7 +77,7 @@ fn advance(
 ) {
     for chain in chains {
         for _ in 0..steps / u64::from(CHAINS) {
-            chain.step(tracer, ensemble.mixture(), film);
+            chain.step(tracer, ensemble.kernel(), film);
         }
         chain.flush(film);
     }
@@ -91,13 +91,12 @@ fn count(scene: &Scene, strategies: &StrategyOptions) -> (usize, u64) {
         threads: 1,
         strategies: *strategies,
         bootstrap_samples: 1 << 13,
-        precision: 0.003,
     };
     let ensemble = Ensemble::new(scene, &settings, |_| ());
     let mut chains: Vec<Chain> = ensemble
         .chains()
         .zip(0..)
-        .map(|(c, id)| Chain::new(ChainId(id), 3, c.current().clone(), ensemble.mixture()))
+        .map(|(c, id)| Chain::new(ChainId(id), 3, c.current().clone(), ensemble.kernel()))
         .collect();
     assert_eq!(chains.len(), CHAINS as usize, "the scene has light");
     // Looking at every step allocates nothing either.

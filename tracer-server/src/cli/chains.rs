@@ -184,7 +184,7 @@ impl ChainArgs {
     pub fn check(&self, integrator: IntegratorName) -> anyhow::Result<()> {
         let StrategyArgs { strategies, without, tune, adapt } = &self.strategies;
         let has_chains = matches!(integrator, IntegratorName::Mlt | IntegratorName::Pssmlt);
-        let has_strategies = integrator == IntegratorName::Mlt;
+        let has_strategies = matches!(integrator, IntegratorName::Auto | IntegratorName::Mlt);
         let idle: Vec<&str> = [
             ("--chains", self.chains.is_some() && !has_chains),
             ("--strategies", !strategies.is_empty() && !has_strategies),

@@ -22,6 +22,10 @@ const WINDOW: u64 = 20;
 const PAUSE: Duration = Duration::from_millis(100);
 /// Samples drawn at most for a precision that the driver asks for.
 const MOST_SAMPLES: u64 = 1 << 22;
+/// And at least.
+const LEAST_SAMPLES: u64 = 1 << 12;
+/// Relative standard error of `b` that is told of until somebody asks for another.
+const USUAL_PRECISION: f64 = 0.01;
 
 /// The chains of a scene.
 pub(super) struct Plant<'a> {
@@ -30,6 +34,8 @@ pub(super) struct Plant<'a> {
     hub: &'a Hub,
     archive: &'a Archive,
     ensemble: Ensemble,
+    /// Relative standard error of `b` that was asked for.
+    precision: f64,
     reporter: Reporter,
     epoch: u32,
     running: bool,
@@ -60,6 +66,7 @@ impl<'a> Plant<'a> {
             hub,
             archive,
             ensemble,
+            precision: USUAL_PRECISION,
             epoch: 0,
             running: true,
             change: (String::new(), None),
@@ -108,8 +115,8 @@ impl<'a> Plant<'a> {
             // Kept before it is shown, so that whatever is picked can be found.
             let (normalization, _) = self.ensemble.normalization(self.scene);
             let checkpoints = self.ensemble.take_checkpoints();
-            let mixture = self.ensemble.shared_mixture();
-            self.archive.put(Round::new(mixture, normalization, WINDOW.min(steps), checkpoints));
+            let kernel = self.ensemble.shared_kernel();
+            self.archive.put(Round::new(kernel, normalization, WINDOW.min(steps), checkpoints));
         }
         for batch in batches {
             self.hub.publish_paths(batch);
@@ -150,11 +157,13 @@ impl<'a> Plant<'a> {
             }
             ChainCommand::SetWeight { strategy, weight } => self.set_weight(strategy, weight),
             ChainCommand::SetPrecision(precision) => {
-                let usual = EnsembleSettings::default();
-                let more = (usual.precision / precision).powi(2).max(1.0);
-                let samples = usual.bootstrap_samples as f64 * more;
-                self.settings.precision = precision;
-                self.settings.bootstrap_samples = (samples as u64).min(MOST_SAMPLES);
+                // The pool there is tells how large the next one must be, and is thrown away.
+                let (b, error) = self.ensemble.normalization(self.scene);
+                let more = (error / b / precision).powi(2);
+                let samples = self.settings.bootstrap_samples as f64 * more;
+                self.precision = precision;
+                self.settings.bootstrap_samples =
+                    (samples as u64).clamp(LEAST_SAMPLES, MOST_SAMPLES);
                 Ok(self.restart(format!("started anew, with b known to {precision}"), author))
             }
             ChainCommand::Restart { seed } => {
@@ -211,7 +220,7 @@ impl<'a> Plant<'a> {
             running: self.running,
             weights: self.ensemble.mixture().weights(),
             seed: self.settings.seed,
-            precision: self.settings.precision,
+            precision: self.precision,
             change,
             by,
         }

@@ -8,11 +8,10 @@ use common::{
     StrategyId, StrategySet, VertexRecord,
 };
 
-use crate::chain::{Archive, Chain, Checkpoint, Outcome, Round, Step};
+use crate::chain::{Archive, Chain, Checkpoint, Kernel, Outcome, Round, Step};
 use crate::film::Film;
 use crate::hub::FocusNews;
 use crate::math::{Rng, Stream};
-use crate::mutation::Mixture;
 use crate::path::{Cut, Draft, Failure, Kept, Path, Vertex};
 use crate::scene::{RayCounts, Scene, Tracer};
 
@@ -51,7 +50,7 @@ struct Walk {
     origin: PathId,
     round: Arc<Round>,
     /// The strategies that may act.
-    mixture: Mixture,
+    kernel: Kernel,
     current: Arc<FocusPath>,
     steps: u64,
     accepted: u64,
@@ -83,7 +82,7 @@ impl Walker {
 
     /// Names of the strategies, in their order.
     pub(super) fn strategies(&self) -> Vec<String> {
-        self.walk.as_ref().map(|walk| walk.mixture.names()).unwrap_or_default()
+        self.walk.as_ref().map(|walk| walk.kernel.mixture.names()).unwrap_or_default()
     }
 
     /// The strategies that may act.
@@ -121,8 +120,8 @@ impl Walker {
                 .ok_or("no path has been shown yet; watch the chains and try again")?,
         };
         let (path, round) = self.path(origin, archive)?;
-        let mixture = restricted(&round.mixture, self.allowed)?;
-        self.begin(path, origin, round, mixture);
+        let kernel = restricted(&round.kernel, self.allowed)?;
+        self.begin(path, origin, round, kernel);
         Ok(self.arrived())
     }
 
@@ -134,7 +133,7 @@ impl Walker {
             let (checkpoint, walk) = known.zip(self.walk.as_ref()).ok_or_else(|| {
                 format!("the path {id} is gone: the explorer keeps its last {MEMORY} paths")
             })?;
-            let chain = Chain::resume(&scene, checkpoint, &walk.mixture)
+            let chain = Chain::resume(&scene, checkpoint, &walk.kernel)
                 .map_err(|failure| format!("the path {id} is no path: {}", failure.name()))?;
             return Ok((chain.current().clone(), Arc::clone(&walk.round)));
         }
@@ -153,11 +152,11 @@ impl Walker {
     /// Restricts which strategies may act; the path stays, in an epoch of its own.
     pub(super) fn allow(&mut self, set: StrategySet) -> Result<FocusNews, String> {
         if let Some(walk) = self.walk.take() {
-            match restricted(&walk.round.mixture, set) {
-                Ok(mixture) => {
+            match restricted(&walk.round.kernel, set) {
+                Ok(kernel) => {
                     self.allowed = set;
                     let path = walk.chain.current().clone();
-                    self.begin(path, walk.origin, walk.round, mixture);
+                    self.begin(path, walk.origin, walk.round, kernel);
                 }
                 Err(error) => {
                     self.walk = Some(walk);
@@ -168,14 +167,14 @@ impl Walker {
         Ok(self.arrived())
     }
 
-    fn begin(&mut self, path: Path, origin: PathId, round: Arc<Round>, mixture: Mixture) {
+    fn begin(&mut self, path: Path, origin: PathId, round: Arc<Round>, kernel: Kernel) {
         self.epoch += 1;
         let rng = Rng::new(self.run_seed, Stream::Explorer, self.epoch.into());
-        let mut chain = Chain::with_stream(ChainId::EXPLORER, rng, path, &mixture);
+        let mut chain = Chain::with_stream(ChainId::EXPLORER, rng, path, &kernel);
         self.film = Film::new(self.film.width(), self.film.height());
-        chain.begin_epoch(self.epoch, &mixture, &mut self.film);
+        chain.begin_epoch(self.epoch, &kernel, &mut self.film);
         let current = Arc::new(focus_path(&chain, self.number));
-        self.walk = Some(Walk { chain, origin, round, mixture, current, steps: 0, accepted: 0 });
+        self.walk = Some(Walk { chain, origin, round, kernel, current, steps: 0, accepted: 0 });
         self.remember();
     }
 
@@ -189,7 +188,7 @@ impl Walker {
     pub(super) fn step(&mut self) -> (Arc<FocusStep>, Arc<FocusPath>) {
         let scene = Tracer::new(&self.scene);
         let Some(walk) = &mut self.walk else { return Default::default() };
-        let step = walk.chain.step(&scene, &walk.mixture, &mut self.film);
+        let step = walk.chain.step(&scene, &walk.kernel, &mut self.film);
         walk.steps += 1;
         let id = PathId { chain: ChainId::EXPLORER, epoch: self.epoch, step: walk.chain.steps() };
         let moved = matches!(step.outcome, Outcome::Accepted { .. });
@@ -223,12 +222,13 @@ impl Walker {
         let Some(walk) = &mut self.walk else { return self.arrived() };
         let index = usize::from(strategy.0);
         // The weights of all strategies: a fan may show one that must not act now.
-        let mixture = if walk.mixture.weights().get(index).is_some_and(|&weight| weight > 0.0) {
-            &walk.mixture
+        let weights = walk.kernel.mixture.weights();
+        let kernel = if weights.get(index).is_some_and(|&weight| weight > 0.0) {
+            &walk.kernel
         } else {
-            &*walk.round.mixture
+            &*walk.round.kernel
         };
-        let step = walk.chain.probe(&scene, mixture, index, &mut self.fan);
+        let step = walk.chain.probe(&scene, kernel, index, &mut self.fan);
         let id = walk.current.header.id;
         let seen = walk.describe(&scene, &step);
         let told = FocusStep { number: self.number, id, fan: true, strategy, ..seen };
@@ -274,8 +274,10 @@ impl Walk {
             backward: trial.proposal.backward,
             mixture_current: trial.mixture_current,
             mixture_proposed: trial.mixture_proposed,
+            target_current: trial.target_current,
+            target_proposed: trial.target_proposed,
         });
-        let stuck = failed && !(self.mixture.total(self.chain.current()) > 0.0);
+        let stuck = failed && !(self.kernel.mixture.total(self.chain.current()) > 0.0);
         let told = FocusStep {
             strategy: StrategyId(if stuck { u8::MAX } else { step.strategy as u8 }),
             acceptance: step.acceptance,
@@ -353,9 +355,10 @@ fn blocker(scene: &Tracer<'_>, x: &Path, cut: Cut, draft: &Draft) -> Option<[f32
     is_between.then(|| hit.position.as_vec3().to_array())
 }
 
-/// The mixture with nothing but the strategies of a set.
-fn restricted(mixture: &Mixture, set: StrategySet) -> Result<Mixture, String> {
-    let mut mixture = mixture.clone();
+/// The kernel with nothing but the strategies of a set.
+fn restricted(kernel: &Kernel, set: StrategySet) -> Result<Kernel, String> {
+    let mut kernel = kernel.clone();
+    let mixture = &mut kernel.mixture;
     let keep = |(index, &weight): (usize, &f64)| {
         if set.contains(StrategyId(index as u8)) { weight } else { 0.0 }
     };
@@ -364,7 +367,7 @@ fn restricted(mixture: &Mixture, set: StrategySet) -> Result<Mixture, String> {
         return Err("none of the strategies that may act is switched on; allow others".to_owned());
     }
     mixture.set_weights(&weights);
-    Ok(mixture)
+    Ok(kernel)
 }
 
 fn records(vertices: &[Vertex]) -> Vec<VertexRecord> {

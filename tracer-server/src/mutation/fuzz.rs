@@ -180,7 +180,6 @@ fn random_scenes_make_pictures() {
             threads: 1,
             strategies: StrategyOptions::default(),
             bootstrap_samples: 1 << 11,
-            precision: 0.003,
         };
         let mut ensemble = Ensemble::new(&scene, &settings, |_| ());
         ensemble.advance(&scene, 300, None);

@@ -16,22 +16,18 @@ use crate::scene::fixtures::{
     saturated_room, slab_over_floor, specular_room, wall_and_lamp_in_a_pane, wall_in_a_pane,
 };
 use crate::scene::{Scene, Tracer};
-use crate::verify::invariance::{Propose, Run, Test};
+use crate::target::Target;
+use crate::target::laws::targets;
+use crate::verify::invariance::{Propose, Run, Test, Walk};
 use crate::verify::judge::{Finding, Law, Subject, Verdict, examine};
 
 /// Findings among which the chance of a false alarm is shared.
 const FAMILY: usize = 40;
 
 /// Puts a way of proposing to the test on `samples` bidirectional samples, as `verify` does.
-fn judged(
-    name: &str,
-    scene: &Scene,
-    propose: &Propose<'_>,
-    test: Test,
-    samples: u64,
-) -> Vec<Finding> {
+fn judged(name: &str, scene: &Scene, walk: Walk<'_>, test: Test, samples: u64) -> Vec<Finding> {
     let run = Run { test, samples, seed: 20, number: 0, threads: 2 };
-    let subject = Subject { name, propose, family: FAMILY };
+    let subject = Subject { name, walk, family: FAMILY };
     let laws = [(Law::Invariance, "invariance"), (Law::Flow, "flow")];
     // Single steps carry no flow.
     let laws = if matches!(test, Test::Steps(_)) { &laws[..1] } else { &laws };
@@ -52,19 +48,19 @@ fn strategy<M: Mutation>(
 }
 
 fn assert_lawful(name: &str, scene: &Scene, propose: &Propose<'_>) {
-    assert_lawful_by(name, scene, propose, (20_000, 15));
+    assert_lawful_by(name, scene, whole(propose), (20_000, 15));
+}
+
+/// A way of proposing in a chain that visits all light as it is.
+fn whole<'a>(propose: &'a Propose<'a>) -> Walk<'a> {
+    Walk { propose, target: &Target::Whole }
 }
 
 /// With `samples` bidirectional samples for proposals, and three times as many for steps; at least
 /// `least` functions must be exercised.
-fn assert_lawful_by(
-    name: &str,
-    scene: &Scene,
-    propose: &Propose<'_>,
-    (samples, least): (u64, usize),
-) {
+fn assert_lawful_by(name: &str, scene: &Scene, walk: Walk<'_>, (samples, least): (u64, usize)) {
     for (test, samples) in [(Test::Steps(3), 3 * samples), (Test::Proposals(5), samples)] {
-        let findings = judged(name, scene, propose, test, samples);
+        let findings = judged(name, scene, walk, test, samples);
         assert!(findings[0].judged >= least, "{findings:?}: too few functions were exercised");
         for finding in findings {
             assert_ne!(finding.verdict, Verdict::Fail, "{test:?}: {finding:?}");
@@ -101,7 +97,8 @@ fn every_light_and_lens_is_lawful() {
 }
 
 fn assert_lawful_here<M: Mutation>(name: &str, scene: &Scene, mutation: &M) {
-    assert_lawful_by(&format!("{}, {name}", M::NAME), scene, &strategy(mutation), (6_000, 5));
+    let propose = strategy(mutation);
+    assert_lawful_by(&format!("{}, {name}", M::NAME), scene, whole(&propose), (6_000, 5));
     check_moves(scene, mutation);
 }
 
@@ -202,17 +199,60 @@ fn wide_multi_chain(scene: &Scene) -> MultiChain {
     MultiChain { angle: Sizes { min: 1e-3, max: 0.5 }, ..MultiChain::new(scene.camera()) }
 }
 
-/// A wrong strategy must be found, by a margin.
-#[expect(clippy::print_stdout, reason = "the table of what was found, with --nocapture")]
+/// Every strategy on everything that chains may visit.
+#[test]
+fn every_target_is_left_alone() {
+    let (room, slab) = (specular_room().build(), slab_over_floor(true).build());
+    assert_aimed(&room, &bidirectional(&room));
+    assert_aimed(&room, &independent(&room));
+    assert_aimed(&room, &LensPerturbation::new(room.camera()));
+    assert_aimed(&room, &lens_subpath(&room));
+    assert_aimed(&room, &CausticPerturbation::new(room.camera()));
+    assert_aimed(&room, &Primary::default());
+    assert_aimed(&slab, &wide_multi_chain(&slab));
+}
+
+fn assert_aimed<M: Mutation>(scene: &Scene, mutation: &M) {
+    let propose = strategy(mutation);
+    for target in &targets(scene) {
+        let name = format!("{}, {}", M::NAME, target.name());
+        assert_lawful_by(&name, scene, Walk { propose: &propose, target }, (8_000, 5));
+    }
+}
+
+/// A chain that forgets how much more often the proposal is to be visited.
+#[test]
+fn a_forgotten_target_is_found() {
+    let scene = specular_room().build();
+    for target in &targets(&scene) {
+        let right = bidirectional(&scene);
+        let wrong: Box<Propose<'_>> = Box::new(|scene, x, rng, draft, y| {
+            let proposal = propose(&right, scene, x, rng, draft, y)?;
+            // The test multiplies by this.
+            let ratio = proposal.ratio / target.importance(y).rho;
+            Ok(Proposal { ratio, ..proposal })
+        });
+        let name = format!("{}: rho of the proposal left out", target.name());
+        assert_found_on(&name, &scene, Walk { propose: &wrong, target }, Test::Steps(3), 30_000);
+    }
+}
+
+/// A wrong strategy must be found on every target, by a margin.
 fn assert_found(mutant: &Mutant<'_>, scene: &Scene, test: Test, samples: u64) {
-    let findings = judged(mutant.name, scene, &mutant.propose, test, samples);
+    for target in &[vec![Target::Whole], targets(scene)].concat() {
+        let name = format!("{}, {}", mutant.name, target.name());
+        let walk = Walk { propose: &mutant.propose, target };
+        assert_found_on(&name, scene, walk, test, samples);
+    }
+}
+
+#[expect(clippy::print_stdout, reason = "the table of what was found, with --nocapture")]
+fn assert_found_on(name: &str, scene: &Scene, walk: Walk<'_>, test: Test, samples: u64) {
+    let findings = judged(name, scene, walk, test, samples);
     let broken: Vec<_> = findings.iter().filter(|f| f.verdict == Verdict::Fail).collect();
     let worst = broken.iter().map(|f| f.worst).fold(0.0, f64::max);
-    println!(
-        "{:60} {worst:6.1} of {:4} at {}",
-        mutant.name, findings[0].judged, findings[0].samples
-    );
-    assert!(worst > 6.0, "{} was not found: {findings:?}", mutant.name);
+    println!("{name:80} {worst:6.1} of {:4} at {}", findings[0].judged, findings[0].samples);
+    assert!(worst > 6.0, "{name} was not found: {findings:?}");
 }
 
 #[test]
@@ -280,7 +320,7 @@ fn wrong_multi_chain_perturbations_are_found() {
 fn wrong_primary_mutations_are_found() {
     let (room, glass) = (specular_room().build(), floor_through_glass().build());
     for mutant in mutants::of_primary(Primary::default()) {
-        let (scene, samples) = if mutant.needs_glass { (&glass, 100_000) } else { (&room, 30_000) };
+        let (scene, samples) = if mutant.needs_glass { (&glass, 100_000) } else { (&room, 60_000) };
         assert_found(&mutant, scene, Test::Steps(3), samples);
     }
 }

@@ -320,7 +320,7 @@ pub(crate) fn wall_and_lamp_in_a_pane() -> Fixture {
 }
 
 /// A room that is open to the front and above, without a light.
-fn open_room() -> Fixture {
+pub(crate) fn open_room() -> Fixture {
     Fixture::new(DVec3::new(0.1, 0.1, 2.5), DVec3::new(0.0, -0.1, -1.0), 45.0)
         .quad(RED, Rgb::BLACK, [-1., -1., -1.], [0., 2., 0.], [0., 0., 2.])
         .quad(GREEN, Rgb::BLACK, [1., -1., -1.], [0., 0., 2.], [0., 2., 0.])
@@ -331,7 +331,7 @@ fn open_room() -> Fixture {
 }
 
 /// The same with a ball of glass.
-fn open_room_with_glass() -> Fixture {
+pub(crate) fn open_room_with_glass() -> Fixture {
     open_room().sphere(GLASS, Rgb::BLACK, [-0.45, -0.6, -0.1], 0.35)
 }
 

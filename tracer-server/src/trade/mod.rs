@@ -126,7 +126,7 @@ impl Plan<'_> {
         let mut settings = RenderSettings { budget: self.budgets[budget], ..*settings };
         // No two budgets share a seed: their errors are independent.
         settings.ensemble.seed += number + self.runs * budget as u64;
-        let Rendering { image, report } = render(scene, &settings, |_| ());
+        let Rendering { image, report, .. } = render(scene, &settings, |_| ());
         let errors = self.errors(&image);
         let run = Run {
             setting: name.clone(),
@@ -201,7 +201,7 @@ impl Reference {
         scene: &Scene,
         settings: &RenderSettings,
         floor: Floor,
-        mut on_progress: impl FnMut(f64),
+        mut on_progress: impl FnMut(f64) + Send,
     ) -> Self {
         let mut half = |seed: u64, begin: f64| {
             let mut settings = *settings;

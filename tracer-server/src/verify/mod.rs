@@ -13,14 +13,15 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::Serialize;
 
-use crate::chain::EnsembleSettings;
+use crate::chain::{EnsembleSettings, Kernel};
 use crate::mutation::{
     Independent, KINDS, Mixture, MixtureBasis, Mutation as _, Strategy, StrategyOptions, key_of,
 };
 use crate::scene::Scene;
+use crate::target::Target;
 use census::Census;
 use flow::Flows;
-use invariance::{Gathered, Run, Test, by_itself};
+use invariance::{Gathered, Run, Test, Walk, by_itself};
 use judge::{Law, Subject, examine};
 
 pub use ergodicity::ClassVisits;
@@ -196,7 +197,8 @@ fn verify_mixture(
     report.findings.extend(findings);
     report.visits = visits;
     on_share(1.0, "chains from the rarest classes");
-    report.findings.push(ergodicity::from_the_rarest(scene, census, mixture, &plan));
+    let kernel = Kernel::whole(mixture.clone());
+    report.findings.push(ergodicity::from_the_rarest(scene, census, &kernel, &plan));
 }
 
 /// The mixture's strategies with the given names, or all of them.
@@ -222,7 +224,8 @@ fn verify_one(
 ) -> Gathered {
     let &Settings { samples, seed, threads, .. } = settings;
     let propose = by_itself(strategy);
-    let subject = Subject { name: strategy.name(), propose: &propose, family };
+    let walk = Walk { propose: &propose, target: &Target::Whole };
+    let subject = Subject { name: strategy.name(), walk, family };
     let drawn = AtomicU64::new(0);
     let listen = |law: &'static str| {
         let drawn = &drawn;
