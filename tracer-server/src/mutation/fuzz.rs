@@ -5,13 +5,11 @@ use common::Rgb;
 use glam::{DMat3, DVec3};
 
 use super::{KINDS, Mixture, MixtureBasis, StrategyOptions};
-use crate::bsdf::{
-    BsdfDescription, ConductorDescription, DielectricDescription, Fresnel, PlasticDescription,
-};
+use crate::bsdf::{BsdfDescription, ColorInput, Given, MODELS, Named, NumberInput, Value};
 use crate::chain::{Ensemble, EnsembleSettings};
 use crate::math::{Rng, Stream, uniform_sphere};
 use crate::path::{Aim, BidirectionalSampler, Draft, Path};
-use crate::scene::fixtures::{Fixture, MIRROR, lambert};
+use crate::scene::fixtures::{Fixture, lambert};
 use crate::scene::{Glow, Scene, Tracer};
 
 const SCENES: u64 = 60;
@@ -33,30 +31,68 @@ fn point(rng: &mut Rng) -> [f64; 3] {
     rng.array::<3>().map(|u| 1.8 * u - 0.9)
 }
 
+/// Whatever a model asks for, three times out of four.
+struct Anything<'r> {
+    rng: &'r mut Rng,
+}
+
+impl Anything<'_> {
+    fn given<T>(&mut self, value: impl FnOnce(&mut Rng) -> T) -> Option<T> {
+        (self.rng.below(4) > 0).then(|| value(self.rng))
+    }
+}
+
+impl Given for Anything<'_> {
+    type Error = String;
+
+    fn color(&mut self, _: &'static str) -> Result<Option<Rgb>, String> {
+        Ok(self.given(color))
+    }
+
+    fn color_input(&mut self, _: &'static str) -> Result<Option<ColorInput>, String> {
+        Ok(self.given(|rng| color(rng).into()))
+    }
+
+    fn number(&mut self, _: &'static str) -> Result<Option<f64>, String> {
+        Ok(self.given(|rng| between(rng, 1e-4, 3.0)))
+    }
+
+    fn number_input(&mut self, _: &'static str) -> Result<Option<NumberInput>, String> {
+        Ok(self.given(|rng| between(rng, 1e-4, 1.0).into()))
+    }
+
+    fn number_or_name(&mut self, name: &'static str) -> Result<Option<Named>, String> {
+        Ok(self.number(name)?.map(Named::Number))
+    }
+
+    fn word(&mut self, _: &'static str) -> Result<Option<String>, String> {
+        Ok(None)
+    }
+
+    fn flag(&mut self, _: &'static str) -> Result<bool, String> {
+        Ok(self.rng.below(2) == 0)
+    }
+
+    fn error(&self, name: &'static str, message: &str) -> String {
+        format!("{name}: {message}")
+    }
+
+    fn warn(&mut self, _: &str) {}
+}
+
+/// Any model with any parameters.
 fn material(rng: &mut Rng) -> BsdfDescription {
-    let roughness = between(rng, 1e-4, 1.0);
-    let eta = between(rng, 0.3, 3.0);
-    let fresnel = match rng.below(3) {
-        0 => Fresnel::Dielectric { eta: 1.0 + eta, tint: color(rng) },
-        1 => Fresnel::Schlick(color(rng)),
-        _ => Fresnel::Conductor { eta: color(rng), k: color(rng) * 5.0, tint: Rgb::WHITE },
-    };
-    let (reflectance, transmittance) = (color(rng), color(rng));
-    let glass = |roughness: f64| {
-        let roughness = roughness.into();
-        DielectricDescription { eta, reflectance, transmittance, roughness }.into()
-    };
-    match rng.below(7) {
-        0 => MIRROR,
-        1 => glass(0.0),
-        2 => glass(roughness),
-        3 => ConductorDescription { fresnel, roughness: roughness.into() }.into(),
-        4 => {
-            let roughness = if rng.below(2) == 0 { 0.0 } else { roughness };
-            PlasticDescription { diffuse: reflectance.into(), fresnel, roughness, nonlinear: false }
-                .into()
+    loop {
+        let kind = MODELS[rng.below(MODELS.len())];
+        // Not everything goes together.
+        if let Some(Ok(mut model)) = BsdfDescription::read(kind.name, &mut Anything { rng }) {
+            model.parameters(&mut |_, value| {
+                if let Value::Number(number, range) = value {
+                    *number = number.clamp(range.low, range.high);
+                }
+            });
+            return model;
         }
-        _ => lambert(reflectance.r, reflectance.g, reflectance.b),
     }
 }
 

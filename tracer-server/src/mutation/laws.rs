@@ -6,8 +6,9 @@
 
 use super::mutants::{self, Mutant};
 use super::{
-    Bidirectional, CausticPerturbation, Independent, LensPerturbation, LensSubpath, MultiChain,
-    Mutation, Primary, Proposal, Sizes, inspect, propose,
+    Bidirectional, CausticPerturbation, Independent, KINDS, Kind, LensPerturbation, LensSubpath,
+    Mixture, MixtureBasis, MultiChain, Mutation, Primary, Proposal, STRATEGY_COUNT, Sizes,
+    Strategy, StrategyOptions, propose,
 };
 use crate::math::{Rng, Stream};
 use crate::path::{Aim, BidirectionalSampler, Draft, Failure, Path};
@@ -18,7 +19,7 @@ use crate::scene::fixtures::{
 use crate::scene::{Scene, Tracer};
 use crate::target::Target;
 use crate::target::laws::targets;
-use crate::verify::invariance::{Propose, Run, Test, Walk};
+use crate::verify::invariance::{Propose, Run, Test, Walk, by_itself};
 use crate::verify::judge::{Finding, Law, Subject, Verdict, examine};
 
 /// Findings among which the chance of a false alarm is shared.
@@ -48,7 +49,7 @@ fn strategy<M: Mutation>(
 }
 
 fn assert_lawful(name: &str, scene: &Scene, propose: &Propose<'_>) {
-    assert_lawful_by(name, scene, whole(propose), (20_000, 15));
+    assert_lawful_by(name, scene, whole(propose), 20_000, 15);
 }
 
 /// A way of proposing in a chain that visits all light as it is.
@@ -58,19 +59,27 @@ fn whole<'a>(propose: &'a Propose<'a>) -> Walk<'a> {
 
 /// With `samples` bidirectional samples for proposals, and three times as many for steps; at least
 /// `least` functions must be exercised.
-fn assert_lawful_by(name: &str, scene: &Scene, walk: Walk<'_>, (samples, least): (u64, usize)) {
+fn assert_lawful_by(name: &str, scene: &Scene, walk: Walk<'_>, samples: u64, least: usize) {
+    let functions = judged_lawful(name, scene, walk, samples);
+    assert!(functions >= least, "{name}: only {functions} functions were exercised");
+}
+
+/// That no law is broken; returns how many functions were judged by.
+fn judged_lawful(name: &str, scene: &Scene, walk: Walk<'_>, samples: u64) -> usize {
+    let mut functions = usize::MAX;
     for (test, samples) in [(Test::Steps(3), 3 * samples), (Test::Proposals(5), samples)] {
         let findings = judged(name, scene, walk, test, samples);
-        assert!(findings[0].judged >= least, "{findings:?}: too few functions were exercised");
+        functions = functions.min(findings[0].judged);
         for finding in findings {
             assert_ne!(finding.verdict, Verdict::Fail, "{test:?}: {finding:?}");
         }
     }
+    functions
 }
 
 fn independent(scene: &Scene) -> Independent {
     let aperture = scene.camera().has_aperture();
-    Independent::new(&[0.0, 1.0, 4.0, 3.0, 2.0, 1.0, 1.0], scene.max_edges(), aperture)
+    Independent::new(&ENERGY, scene.max_edges(), aperture)
 }
 
 fn bidirectional(scene: &Scene) -> Bidirectional {
@@ -81,25 +90,43 @@ fn lens_subpath(scene: &Scene) -> LensSubpath {
     LensSubpath { max_edges: scene.max_edges(), aperture: scene.camera().has_aperture() }
 }
 
-/// Every strategy with every light and lens.
+/// Every strategy that a scene may have, with sizes that matter to a room.
+fn strategies(scene: &Scene) -> Mixture {
+    let mut options = StrategyOptions::default();
+    let angles = Sizes { min: 1e-3, max: 0.5 };
+    options.set_parameter("multi-chain", "angle", &[angles.min, angles.max]).expect("it has one");
+    Mixture::new(&options, &MixtureBasis::of(scene, &ENERGY))
+}
+
+/// What paths of so many edges carry, about.
+const ENERGY: [f64; 7] = [0.0, 1.0, 4.0, 3.0, 2.0, 1.0, 1.0];
+
+/// Every strategy with every light and lens. One that finds little to do in some of the scenes finds
+/// enough in others.
 #[test]
 fn every_light_and_lens_is_lawful() {
+    let mut exercised = [0; STRATEGY_COUNT];
     for (name, fixture) in every_light() {
         let scene = fixture.build();
-        assert_lawful_here(name, &scene, &bidirectional(&scene));
-        assert_lawful_here(name, &scene, &independent(&scene));
-        assert_lawful_here(name, &scene, &LensPerturbation::new(scene.camera()));
-        assert_lawful_here(name, &scene, &lens_subpath(&scene));
-        assert_lawful_here(name, &scene, &CausticPerturbation::new(scene.camera()));
-        let aperture = scene.camera().has_aperture();
-        assert_lawful_here(name, &scene, &Primary { aperture, ..Primary::default() });
+        let mixture = strategies(&scene);
+        for strategy in (0..mixture.len()).map(|index| mixture.get(index)) {
+            let propose = by_itself(strategy);
+            let title = format!("{}, {name}", strategy.name());
+            let functions = judged_lawful(&title, &scene, whole(&propose), 6_000);
+            if functions >= 5 && checked_moves(&scene, strategy) > 200 {
+                exercised[kind_of(strategy)] += 1;
+            }
+        }
+    }
+    for (kind, exercised) in KINDS.iter().zip(exercised) {
+        assert!(exercised >= 2, "{} was put to the test in {exercised} scenes", kind.name);
     }
 }
 
-fn assert_lawful_here<M: Mutation>(name: &str, scene: &Scene, mutation: &M) {
-    let propose = strategy(mutation);
-    assert_lawful_by(&format!("{}, {name}", M::NAME), scene, whole(&propose), (6_000, 5));
-    check_moves(scene, mutation);
+/// The strategy's place in the table of kinds.
+fn kind_of(strategy: &Strategy) -> usize {
+    let of_kind = |kind: &Kind| kind.name == strategy.name();
+    KINDS.iter().position(of_kind).expect("every strategy is of some kind")
 }
 
 #[test]
@@ -202,21 +229,15 @@ fn wide_multi_chain(scene: &Scene) -> MultiChain {
 /// Every strategy on everything that chains may visit.
 #[test]
 fn every_target_is_left_alone() {
-    let (room, slab) = (specular_room().build(), slab_over_floor(true).build());
-    assert_aimed(&room, &bidirectional(&room));
-    assert_aimed(&room, &independent(&room));
-    assert_aimed(&room, &LensPerturbation::new(room.camera()));
-    assert_aimed(&room, &lens_subpath(&room));
-    assert_aimed(&room, &CausticPerturbation::new(room.camera()));
-    assert_aimed(&room, &Primary::default());
-    assert_aimed(&slab, &wide_multi_chain(&slab));
-}
-
-fn assert_aimed<M: Mutation>(scene: &Scene, mutation: &M) {
-    let propose = strategy(mutation);
-    for target in &targets(scene) {
-        let name = format!("{}, {}", M::NAME, target.name());
-        assert_lawful_by(&name, scene, Walk { propose: &propose, target }, (8_000, 5));
+    let scene = specular_room().build();
+    let mixture = strategies(&scene);
+    assert_eq!(mixture.len(), STRATEGY_COUNT, "the room has something for everyone");
+    for strategy in (0..mixture.len()).map(|index| mixture.get(index)) {
+        let propose = by_itself(strategy);
+        for target in &targets(&scene) {
+            let name = format!("{}, {}", strategy.name(), target.name());
+            assert_lawful_by(&name, &scene, Walk { propose: &propose, target }, 8_000, 5);
+        }
     }
 }
 
@@ -329,44 +350,45 @@ fn wrong_primary_mutations_are_found() {
 /// what a path built from scratch would hold.
 #[test]
 fn proposals_are_reversible_and_their_caches_are_fresh() {
-    let scene = specular_room().build();
-    let b = bidirectional(&scene);
-    let (i, l) = (independent(&scene), LensPerturbation::new(scene.camera()));
-    check_moves(&scene, &b);
-    check_moves(&scene, &i);
-    check_moves(&scene, &l);
-    check_moves(&scene, &lens_subpath(&scene));
-    check_moves(&scene, &CausticPerturbation::new(scene.camera()));
-    check_moves(&scene, &Primary::default());
-    let coated = coated_room().build();
-    check_moves(&coated, &lens_subpath(&coated));
-    check_moves(&slab_over_floor(true).build(), &MultiChain::new(scene.camera()));
+    let mut checked = [0; STRATEGY_COUNT];
+    for fixture in [specular_room(), coated_room(), slab_over_floor(true)] {
+        let scene = fixture.build();
+        let mixture = strategies(&scene);
+        for strategy in (0..mixture.len()).map(|index| mixture.get(index)) {
+            checked[kind_of(strategy)] += checked_moves(&scene, strategy);
+        }
+    }
+    for (kind, checked) in KINDS.iter().zip(checked) {
+        assert!(checked > 300, "{}: only {checked} proposals came about", kind.name);
+    }
 }
 
-fn check_moves<M: Mutation>(scene: &Scene, mutation: &M) {
+/// Looks closely at moves from many paths; returns how many there were.
+fn checked_moves(scene: &Scene, strategy: &Strategy) -> usize {
     let scene = Tracer::new(scene);
     let mut sampler = BidirectionalSampler::new(&scene);
     let (mut draft, mut x, mut y) = (Draft::default(), Path::default(), Path::default());
     let mut rng = Rng::new(3, Stream::Laboratory, 0);
+    let name = strategy.name();
     let mut checked = 0;
     for _ in 0..3000 {
         let aim = Aim::from_numbers(&scene, &mut rng);
         x.clone_from(&Path::default());
         sampler.sample(&scene, aim, &mut rng, |path, _| x.clone_from(path));
-        if x.vertices().is_empty() || !mutation.applicable(&x) {
+        if x.vertices().is_empty() || !strategy.applicable(&x) {
             continue;
         }
-        let Ok(seen) = inspect(mutation, &scene, &x, &mut rng, &mut draft, &mut y) else {
+        let Ok(seen) = strategy.inspect(&scene, &x, &mut rng, &mut draft, &mut y) else {
             continue;
         };
-        assert!(seen.applies_back, "{}: the way back is closed", M::NAME);
-        assert_eq!(seen.flaw, None, "{}: the proposal is sound", M::NAME);
+        assert!(seen.applies_back, "{name}: the way back is closed");
+        assert_eq!(seen.flaw, None, "{name}: the proposal is sound");
         // A move that could not be undone has the ratio zero, and is rejected.
         if seen.forth != 0.0 {
             let product = seen.forth * seen.back;
-            assert!((product - 1.0).abs() < 1e-9, "{}: {seen:?}", M::NAME);
+            assert!((product - 1.0).abs() < 1e-9, "{name}: {seen:?}");
             checked += 1;
         }
     }
-    assert!(checked > 200, "{}: only {checked} proposals came about", M::NAME);
+    checked
 }

@@ -369,6 +369,22 @@ pub(crate) fn every_light() -> Vec<(&'static str, Fixture)> {
     ]
 }
 
+#[test]
+fn every_kind_of_light_is_there() {
+    // A new variant does not compile here: give it the next number, and add it to the lights.
+    let number = |glow: &Glow| match glow {
+        Glow::Point { .. } => 0,
+        Glow::Spot { .. } => 1,
+        Glow::Directional { .. } => 2,
+        Glow::Environment { .. } => 3,
+    };
+    let lights = every_light().into_iter().flat_map(|(_, fixture)| fixture.description.lights);
+    let mut seen: Vec<usize> = lights.map(|light| number(&light.glow)).collect();
+    seen.sort_unstable();
+    seen.dedup();
+    assert_eq!(seen, [0, 1, 2, 3], "a kind of light is not among them");
+}
+
 /// The folder of scenes made by others, or `None` with a printed line.
 #[expect(clippy::print_stderr, reason = "a test that is skipped must say so")]
 pub(crate) fn shared_scenes() -> Option<PathBuf> {
