@@ -2,7 +2,7 @@
 
 use super::Spread;
 use crate::film::Film;
-use crate::path::{Aim, BidirectionalSampler, Path};
+use crate::path::{BidirectionalSampler, CameraSample, Path};
 use crate::scene::Tracer;
 use crate::target::Selective;
 
@@ -19,7 +19,7 @@ impl Bidirectional {
     pub(super) fn look(
         &mut self,
         scene: &Tracer<'_>,
-        aim: Aim,
+        aim: CameraSample,
         numbers: &mut Spread,
         visit: impl FnMut(&Path, f64),
     ) {
@@ -31,7 +31,7 @@ impl Bidirectional {
     pub(super) fn sample(
         &mut self,
         scene: &Tracer<'_>,
-        aim: Aim,
+        aim: CameraSample,
         selective: Selective,
         numbers: &mut Spread,
         film: &mut Film,

@@ -5,7 +5,7 @@ use tests::{Accumulator, Suite};
 use super::{BaseSampler, Pass, path};
 use crate::film::Film;
 use crate::math::{Rng, Strata, Stream};
-use crate::path::{Aim, BidirectionalSampler};
+use crate::path::{BidirectionalSampler, CameraSample};
 use crate::scene::fixtures::{Fixture, coated_room, diffuse_room, every_light, specular_room};
 use crate::scene::{Scene, Tracer};
 use crate::target::laws::middling;
@@ -39,7 +39,7 @@ fn by_paths(scene: &Scene, selective: Selective, seed: u64) -> Film {
     let mut rng = Rng::new(seed, Stream::Laboratory, 5);
     let samples = 20 * SIDE * SIDE;
     for _ in 0..samples {
-        let aim = Aim::from_numbers(&scene, &mut rng);
+        let aim = CameraSample::from_numbers(&scene, &mut rng);
         sampler.sample(&scene, aim, &mut rng, |path, weight| {
             let share = selective.base_share(selective.base.density_sum(path), path.edge_count());
             film.splat(path.pixel(), path.unit_color() * (share * weight));
@@ -109,7 +109,7 @@ fn a_share_by_the_weight_of_a_sample_is_found() {
         let mut rng = Rng::new(seed, Stream::Laboratory, 6);
         let samples = 400 * SIDE * SIDE;
         for _ in 0..samples {
-            let aim = Aim::from_numbers(&scene, &mut rng);
+            let aim = CameraSample::from_numbers(&scene, &mut rng);
             let pixel = scene.camera().pixel(aim.film);
             path::terms(&scene, &aim, &mut rng, |term| {
                 let counted = term.contribution * (1.0 / term.survival);

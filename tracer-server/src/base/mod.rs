@@ -13,7 +13,7 @@ use glam::DVec2;
 
 use crate::film::Film;
 use crate::math::{Rng, Strata, Stream};
-use crate::path::{Aim, Numbers, Strand};
+use crate::path::{CameraSample, Numbers, Strand};
 use crate::scene::{RayCounts, Scene, Tracer};
 use crate::target::{Base, Selective};
 
@@ -52,7 +52,7 @@ impl Spread {
 
     /// A ray through a pixel.
     #[inline]
-    fn aim(&mut self, scene: &Tracer<'_>, pixel: usize) -> Aim {
+    fn aim(&mut self, scene: &Tracer<'_>, pixel: usize) -> CameraSample {
         let camera = scene.camera();
         let [u, v, a, b] = self.row(Strand::Eye, 0);
         let (x, y) = (pixel as u32 % camera.width, pixel as u32 / camera.width);
@@ -60,7 +60,7 @@ impl Spread {
             (f64::from(x) + u) / f64::from(camera.width),
             (f64::from(y) + v) / f64::from(camera.height),
         );
-        Aim::through(scene, point, || [a, b])
+        CameraSample::through(scene, point, || [a, b])
     }
 }
 
@@ -80,7 +80,7 @@ pub fn work_of_paths(scene: &Scene) -> f64 {
     let tracer = Tracer::new(scene);
     let mut rng = Rng::new(0, Stream::Scout, u64::MAX);
     for _ in 0..SAMPLES {
-        let aim = Aim::from_numbers(&tracer, &mut rng);
+        let aim = CameraSample::from_numbers(&tracer, &mut rng);
         path::terms(&tracer, &aim, &mut rng, |_| ());
     }
     let counts = RayCounts::of(&tracer);
@@ -142,7 +142,7 @@ impl BaseSampler {
     fn sample(
         &mut self,
         scene: &Tracer<'_>,
-        aim: &Aim,
+        aim: &CameraSample,
         pixel: usize,
         numbers: &mut Spread,
         film: &mut Film,

@@ -8,7 +8,7 @@
 use common::Rgb;
 use glam::DVec3;
 
-use crate::path::{Aim, Numbers, ROW, Strand, Vertex, extend, light_vertex};
+use crate::path::{CameraSample, Numbers, ROW, Strand, Vertex, extend, light_vertex};
 use crate::scene::Tracer;
 use crate::target::Selective;
 
@@ -18,7 +18,7 @@ const SURE_EDGES: usize = 4;
 /// The light that arrives along the ray `aim` and is left to the sampler.
 pub(super) fn sample(
     scene: &Tracer<'_>,
-    aim: &Aim,
+    aim: &CameraSample,
     selective: Selective,
     numbers: &mut impl Numbers,
 ) -> Rgb {
@@ -52,7 +52,7 @@ impl Term {
 /// Calls `visit` with every contribution of a walk.
 pub(crate) fn terms(
     scene: &Tracer<'_>,
-    aim: &Aim,
+    aim: &CameraSample,
     numbers: &mut impl Numbers,
     mut visit: impl FnMut(Term),
 ) {

@@ -3,7 +3,7 @@
 use super::Pool;
 use crate::math::{Rng, Stream};
 use crate::parallel::{self, Stop};
-use crate::path::{Aim, BidirectionalSampler, Path};
+use crate::path::{BidirectionalSampler, CameraSample, Path};
 use crate::scene::{Scene, Tracer};
 use crate::target::Target;
 
@@ -46,7 +46,7 @@ impl<'a, 's> Source<'a, 's> {
     fn sample(&mut self, number: u64, mut visit: impl FnMut(&Path, f64)) {
         let index = self.key.number << 32 | number;
         let mut rng = Rng::new(self.key.seed, Stream::Bootstrap, index);
-        let aim = Aim::from_numbers(self.scene, &mut rng);
+        let aim = CameraSample::from_numbers(self.scene, &mut rng);
         let target = self.target;
         self.sampler.sample(self.scene, aim, &mut rng, |path, weight| {
             visit(path, weight * target.importance(path).rho);

@@ -12,7 +12,7 @@ use serde::Serialize;
 use crate::math::{Rng, Stream};
 use crate::mutation::{Independent, Mixture, MixtureBasis, Mutation as _, StrategyOptions};
 use crate::parallel::{self, Stop};
-use crate::path::{Aim, BidirectionalSampler, Draft, Path};
+use crate::path::{BidirectionalSampler, CameraSample, Draft, Path};
 use crate::scene::{RayCounts, Scene, Tracer};
 use crate::target::Base;
 
@@ -256,7 +256,7 @@ impl<'s> Scout<'s> {
         for sample in 0..CHUNK {
             let Self { scene, sampler, x, .. } = self;
             let before = RayCounts::of(scene);
-            let aim = Aim::from_numbers(scene, &mut rng);
+            let aim = CameraSample::from_numbers(scene, &mut rng);
             let mut sum = 0.0;
             sampler.sample(scene, aim, &mut rng, |path, weight| {
                 found.lengths[path.edge_count()] += weight;

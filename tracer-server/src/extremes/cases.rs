@@ -9,7 +9,7 @@ use crate::bsdf::{
 };
 use crate::integrator::laws::{BLACK, bidirectional, furnace, lit_by_sphere, sphere_over_plane};
 use crate::scene::fixtures::{Fixture, MIRROR, coated_room, diffuse_room, lambert, specular_room};
-use crate::scene::{Glow, Mesh, SkyImage};
+use crate::scene::{LightKind, Mesh, SkyImage};
 
 fn small(fixture: Fixture) -> Fixture {
     fixture.film(SIDE, SIDE).max_edges(5)
@@ -55,7 +55,7 @@ fn sun(elevation: f64) -> Fixture {
     let direction = DVec3::new(elevation.cos(), -elevation.sin(), 0.0);
     Fixture::new(DVec3::new(0.0, 1.0, 0.4), DVec3::ZERO, 10.0)
         .quad(lambert(0.6, 0.6, 0.6), Rgb::BLACK, [-9., 0., -9.], [0., 0., 18.], [18., 0., 0.])
-        .light(Glow::Directional { direction, irradiance: Rgb::grey(3.0) })
+        .light(LightKind::Directional { direction, irradiance: Rgb::grey(3.0) })
         .film(4, 4)
         .max_edges(2)
 }
@@ -66,7 +66,10 @@ fn point_near_plane(height: f64) -> (Fixture, f64) {
     let (distance, fov, rho, i) = (2.0, 40.0_f64, 0.6, 5.0);
     let fixture = Fixture::new(DVec3::new(0.1, distance, 0.2), DVec3::new(0.1, 0.0, 0.2), fov)
         .quad(lambert(rho, rho, rho), Rgb::BLACK, [-9., 0., -9.], [0., 0., 18.], [18., 0., 0.])
-        .light(Glow::Point { position: DVec3::new(0.17, height, 0.26), intensity: Rgb::grey(i) })
+        .light(LightKind::Point {
+            position: DVec3::new(0.17, height, 0.26),
+            intensity: Rgb::grey(i),
+        })
         .film(4, 4)
         .max_edges(2);
     let side = 2.0 * distance * (0.5 * fov.to_radians()).tan();
@@ -76,12 +79,12 @@ fn point_near_plane(height: f64) -> (Fixture, f64) {
 }
 
 /// An even sky with one texel that outshines it.
-fn hot_sky() -> Glow {
+fn hot_sky() -> LightKind {
     let (width, height) = (16, 8);
     let mut texels = vec![[0.5; 3]; width * height];
     texels[2 * width + 7] = [1e10; 3];
     let image = Some(SkyImage { width, height, texels });
-    Glow::Environment { radiance: Rgb::WHITE, image, rotation: DMat3::from_rotation_y(0.4) }
+    LightKind::Environment { radiance: Rgb::WHITE, image, rotation: DMat3::from_rotation_y(0.4) }
 }
 
 /// The lamp of the room cut into `2 n^2` triangles.

@@ -6,7 +6,7 @@ use crate::chain::LANES;
 use crate::film::Film;
 use crate::math::{Rng, Stream};
 use crate::parallel;
-use crate::path::{Aim, BidirectionalSampler, Path};
+use crate::path::{BidirectionalSampler, CameraSample, Path};
 use crate::scene::{RayCounts, Scene, Tracer};
 
 /// Renders by bidirectional path tracing, pass by pass.
@@ -66,7 +66,7 @@ impl BidirectionalTracer {
         let mut rng = Rng::new(self.seed, Stream::Scattered, self.scattered);
         let film = &mut self.lanes[0];
         for _ in 0..count {
-            let aim = Aim::from_numbers(&scene, &mut rng);
+            let aim = CameraSample::from_numbers(&scene, &mut rng);
             sampler.sample(&scene, aim, &mut rng, |path, weight| splat(film, path, weight));
         }
         self.rays.add(&scene);
@@ -113,7 +113,7 @@ fn render_lane(scene: &Tracer<'_>, film: &mut Film, lane: usize, (seed, pass): (
                 (x as f64 + rng.uniform()) / width as f64,
                 (y as f64 + rng.uniform()) / height as f64,
             );
-            let aim = Aim::through(scene, film_point, || rng.array());
+            let aim = CameraSample::through(scene, film_point, || rng.array());
             sampler.sample(scene, aim, &mut rng, |path, weight| splat(film, path, weight));
         }
     }

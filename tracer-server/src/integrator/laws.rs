@@ -14,7 +14,7 @@ use crate::scene::fixtures::{
     wall_in_a_pane,
 };
 use crate::scene::load::load;
-use crate::scene::{Glow, Scene, builtin};
+use crate::scene::{LightKind, Scene, builtin};
 
 pub(crate) const BLACK: BsdfDescription = lambert(0.0, 0.0, 0.0);
 
@@ -139,7 +139,7 @@ fn a_point_light_fills_a_sphere() {
     // From outside one looks through the back of the near side, which is lit alike.
     let scene = Fixture::new(DVec3::new(0.1, 0.0, 0.3), DVec3::new(0.0, 0.1, -1.0), 60.0)
         .sphere(lambert(rho, rho, rho), Rgb::BLACK, [0.0; 3], radius)
-        .light(Glow::Point { position: DVec3::ZERO, intensity: Rgb::grey(i) })
+        .light(LightKind::Point { position: DVec3::ZERO, intensity: Rgb::grey(i) })
         .film(8, 8)
         .max_edges(n.into())
         .build();
@@ -154,7 +154,7 @@ fn the_sun_lights_a_plane() {
     let direction = DVec3::new(1.0, -2.0, 0.5);
     let scene = Fixture::new(DVec3::new(0.0, 1.0, 0.4), DVec3::ZERO, 10.0)
         .quad(lambert(0.6, 0.6, 0.6), Rgb::BLACK, [-9., 0., -9.], [0., 0., 18.], [18., 0., 0.])
-        .light(Glow::Directional { direction, irradiance: Rgb::grey(3.0) })
+        .light(LightKind::Directional { direction, irradiance: Rgb::grey(3.0) })
         .film(4, 4)
         .max_edges(2)
         .build();
@@ -169,7 +169,7 @@ fn glass_under_an_even_sky_is_invisible() {
     let (radiance, rotation) = (Rgb::grey(2.0), glam::DMat3::IDENTITY);
     let scene = Fixture::new(DVec3::new(0.0, 0.0, 1.2), DVec3::ZERO, 50.0)
         .sphere(clear, Rgb::BLACK, [0.0; 3], 0.5)
-        .light(Glow::Environment { radiance, image: None, rotation })
+        .light(LightKind::Environment { radiance, image: None, rotation })
         .film(8, 8)
         .max_edges(48)
         .build();

@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use crate::film::Film;
 use crate::math::{Rng, Stream};
 use crate::parallel;
-use crate::path::{Aim, Numbers, ROW, Strand, Vertex, extend, light_vertex, scatter};
+use crate::path::{CameraSample, Numbers, ROW, Strand, Vertex, extend, light_vertex, scatter};
 use crate::scene::{RayCounts, Scene, Tracer};
 
 /// Edges that every path gets before Russian roulette begins.
@@ -81,7 +81,7 @@ impl PathTracer {
         let scene = Tracer::new(scene);
         let mut rng = Rng::new(self.seed, Stream::Scattered, self.scattered);
         for _ in 0..count {
-            let aim = Aim::from_numbers(&scene, &mut rng);
+            let aim = CameraSample::from_numbers(&scene, &mut rng);
             let radiance = radiance(&scene, &aim, &mut rng);
             if radiance.is_physical() {
                 self.film.splat(scene.camera().pixel(aim.film), radiance);
@@ -118,13 +118,13 @@ fn sample_pixel(scene: &Tracer<'_>, x: usize, y: usize, rng: &mut Rng) -> Rgb {
         (x as f64 + rng.uniform()) / f64::from(camera.width),
         (y as f64 + rng.uniform()) / f64::from(camera.height),
     );
-    let aim = Aim::through(scene, film, || rng.array());
+    let aim = CameraSample::through(scene, film, || rng.array());
     let radiance = radiance(scene, &aim, rng);
     if radiance.is_physical() { radiance } else { Rgb::BLACK }
 }
 
 /// Radiance that arrives at the lens by the ray `aim`.
-pub(super) fn radiance(scene: &Tracer<'_>, aim: &Aim, numbers: &mut impl Numbers) -> Rgb {
+pub(super) fn radiance(scene: &Tracer<'_>, aim: &CameraSample, numbers: &mut impl Numbers) -> Rgb {
     let mut direction = aim.direction(scene);
     let mut sum = Rgb::BLACK;
     let mut throughput = Rgb::WHITE;

@@ -220,7 +220,7 @@ mod tests {
 
     use super::*;
     use crate::math::Stream;
-    use crate::path::{Aim, BidirectionalSampler};
+    use crate::path::{BidirectionalSampler, CameraSample};
     use crate::scene::fixtures::specular_room;
 
     /// The worked example: `L D E` with a pinhole, an area light and at most seven edges.
@@ -294,7 +294,7 @@ mod tests {
         let mut sampler = BidirectionalSampler::new(scene);
         let mut found = None;
         while found.is_none() {
-            let aim = Aim::from_numbers(scene, &mut rng);
+            let aim = CameraSample::from_numbers(scene, &mut rng);
             sampler.sample(scene, aim, &mut rng, |path, _| {
                 if path.class() == class {
                     found = Some(path.clone());

@@ -8,9 +8,9 @@ use super::{KINDS, Mixture, MixtureBasis, StrategyOptions};
 use crate::bsdf::{BsdfDescription, ColorInput, Given, MODELS, Named, NumberInput, Value};
 use crate::chain::{Ensemble, EnsembleSettings};
 use crate::math::{Rng, Stream, uniform_sphere};
-use crate::path::{Aim, BidirectionalSampler, Draft, Path};
+use crate::path::{BidirectionalSampler, CameraSample, Draft, Path};
 use crate::scene::fixtures::{Fixture, lambert};
-use crate::scene::{Glow, Scene, Tracer};
+use crate::scene::{LightKind, Scene, Tracer};
 
 const SCENES: u64 = 60;
 /// Proposals of each strategy on each scene.
@@ -96,14 +96,14 @@ fn material(rng: &mut Rng) -> BsdfDescription {
     }
 }
 
-fn glow(rng: &mut Rng) -> Glow {
+fn kind(rng: &mut Rng) -> LightKind {
     let (position, intensity) = (DVec3::from(point(rng)), color(rng) * between(rng, 0.1, 10.0));
     let direction = uniform_sphere(rng.uniform(), rng.uniform());
     match rng.below(4) {
-        0 => Glow::Point { position, intensity },
-        1 => Glow::Spot { position, direction, intensity, cutoff: 40.0, beam: 30.0 },
-        2 => Glow::Directional { direction, irradiance: intensity },
-        _ => Glow::Environment {
+        0 => LightKind::Point { position, intensity },
+        1 => LightKind::Spot { position, direction, intensity, cutoff: 40.0, beam: 30.0 },
+        2 => LightKind::Directional { direction, irradiance: intensity },
+        _ => LightKind::Environment {
             radiance: intensity,
             image: None,
             rotation: DMat3::from_rotation_y(rng.uniform()),
@@ -128,10 +128,13 @@ fn any_scene(rng: &mut Rng) -> Scene {
         fixture = fixture.quad(material(rng), Rgb::BLACK, point(rng), u, v);
     }
     for _ in 0..rng.below(3) {
-        fixture = fixture.light(glow(rng));
+        fixture = fixture.light(kind(rng));
     }
-    let skies =
-        fixture.description.lights.iter().filter(|l| matches!(l.glow, Glow::Environment { .. }));
+    let skies = fixture
+        .description
+        .lights
+        .iter()
+        .filter(|l| matches!(l.kind, LightKind::Environment { .. }));
     if skies.count() > 1 {
         fixture.description.lights.pop();
     }
@@ -158,7 +161,7 @@ fn any_path(scene: &Tracer<'_>, rng: &mut Rng) -> Option<Path> {
     let (mut chosen, mut sum) = (None, 0.0);
     let mut choice = Rng::new(5, Stream::Laboratory, 1);
     for _ in 0..SAMPLES {
-        let aim = Aim::from_numbers(scene, rng);
+        let aim = CameraSample::from_numbers(scene, rng);
         sampler.sample(scene, aim, rng, |path, weight| {
             sum += weight;
             if choice.uniform() * sum < weight {

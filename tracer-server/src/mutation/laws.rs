@@ -11,7 +11,7 @@ use super::{
     Strategy, StrategyOptions, propose,
 };
 use crate::math::{Rng, Stream};
-use crate::path::{Aim, BidirectionalSampler, Draft, Failure, Path};
+use crate::path::{BidirectionalSampler, CameraSample, Draft, Failure, Path};
 use crate::scene::fixtures::{
     Fixture, bumpy_room, coated_room, diffuse_room, every_light, floor_through_glass,
     saturated_room, slab_over_floor, specular_room, wall_and_lamp_in_a_pane, wall_in_a_pane,
@@ -372,7 +372,7 @@ fn checked_moves(scene: &Scene, strategy: &Strategy) -> usize {
     let name = strategy.name();
     let mut checked = 0;
     for _ in 0..3000 {
-        let aim = Aim::from_numbers(&scene, &mut rng);
+        let aim = CameraSample::from_numbers(&scene, &mut rng);
         x.clone_from(&Path::default());
         sampler.sample(&scene, aim, &mut rng, |path, _| x.clone_from(path));
         if x.vertices().is_empty() || !strategy.applicable(&x) {

@@ -8,7 +8,8 @@ use super::{MixtureBasis, Mutation, Tuning};
 use crate::bsdf::Local;
 use crate::math::Rng;
 use crate::path::{
-    Aim, Cut, Draft, Failure, Kept, Path, Splice, Vertex, extend, open_for_connection, scatter,
+    CameraSample, Cut, Draft, Failure, Kept, Path, Splice, Vertex, extend, open_for_connection,
+    scatter,
 };
 use crate::scene::Tracer;
 
@@ -115,11 +116,11 @@ impl Mutation for LensSubpath {
         let cut = Cut { light: d, eye_from: x.edge_count() + usize::from(self.aperture) };
         draft.open(cut);
         let aim = if self.aperture {
-            let aim = Aim::through(scene, film, || rng.array());
+            let aim = CameraSample::through(scene, film, || rng.array());
             draft.eye.push(aim.lens);
             aim
         } else {
-            Aim { film, lens: x.vertices()[x.edge_count()] }
+            CameraSample { film, lens: x.vertices()[x.edge_count()] }
         };
         let (mut at, mut direction) = (aim.lens, aim.direction(scene));
         for edges in d + 1.. {

@@ -4,7 +4,7 @@ use arrayvec::ArrayVec;
 use glam::DVec2;
 
 use super::resample::{end_on_light, open_for_connection};
-use super::walk::{Aim, emit, extend, light_vertex, scatter};
+use super::walk::{CameraSample, emit, extend, light_vertex, scatter};
 use super::{Cut, MAX_VERTICES, Numbers, Path, ROW, Splice, Strand, Vertex, Vertices};
 use crate::scene::Tracer;
 
@@ -111,14 +111,14 @@ impl BidirectionalSampler {
     pub fn sample(
         &mut self,
         scene: &Tracer<'_>,
-        aim: Aim,
+        aim: CameraSample,
         numbers: &mut impl Numbers,
         mut visit: impl FnMut(&Path, f64),
     ) {
         let limit = scene.max_edges();
         self.light.clear();
         self.eye.clear();
-        let Aim { film, lens } = aim;
+        let CameraSample { film, lens } = aim;
         self.lens.move_lens(lens);
         self.eye.grow(scene, &lens, aim.direction(scene), limit, |j| {
             numbers.row(Strand::Eye, Strand::Eye.scattering_row(j))

@@ -26,7 +26,7 @@ pub use numbers::{Numbers, ROW, STRANDS, Strand};
 pub use resample::{Draft, Range, end_on_light, open_for_connection, resample};
 pub use tape::Tape;
 pub use vertex::Vertex;
-pub use walk::{Aim, emit, extend, lens_vertex, light_vertex, scatter};
+pub use walk::{CameraSample, emit, extend, lens_vertex, light_vertex, scatter};
 
 use arrayvec::ArrayVec;
 use common::{MAX_VERTICES, Rgb};

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::walk::{Aim, emit, light_vertex, scatter, walk};
+use super::walk::{CameraSample, emit, light_vertex, scatter, walk};
 use super::{Cut, Failure, Numbers, Path, Splice, Strand, Vertex, Vertices};
 use crate::scene::Tracer;
 
@@ -179,7 +179,7 @@ fn walk_from_eye(
     let mut count = range.from_eye;
     let aim = if range.cut.eye_from > x.edge_count() {
         // Without a walk the film point is not used: the connection tells it.
-        let aim = Aim::from_numbers(scene, numbers);
+        let aim = CameraSample::from_numbers(scene, numbers);
         out.push(aim.lens);
         count -= 1;
         if count == 0 {
@@ -188,7 +188,7 @@ fn walk_from_eye(
         Some(aim)
     } else if x.vertices()[range.cut.eye_from].is_lens() {
         let film = DVec2::from(numbers.row(Strand::Eye, 0));
-        Some(Aim { film, lens: x.vertices()[range.cut.eye_from] })
+        Some(CameraSample { film, lens: x.vertices()[range.cut.eye_from] })
     } else {
         None
     };

@@ -16,9 +16,9 @@ use crate::integrator::laws::bidirectional;
 use crate::math::{Rng, Stream};
 use crate::mutation::{Mixture, MixtureBasis, StrategyOptions};
 use crate::parallel::Stop;
-use crate::path::{Aim, BidirectionalSampler, Path};
+use crate::path::{BidirectionalSampler, CameraSample, Path};
 use crate::scene::fixtures::{Fixture, GLASS, coated_room, diffuse_room, open_room, specular_room};
-use crate::scene::{Glow, Scene, Tracer};
+use crate::scene::{LightKind, Scene, Tracer};
 use crate::target::laws::targets;
 use crate::target::{Base, Target};
 
@@ -148,7 +148,7 @@ fn references(scene: &Scene) -> Vec<Film> {
 
 fn scenes() -> [(&'static str, Fixture); 4] {
     let position = DVec3::new(0.3, 0.7, 0.2);
-    let point = Glow::Point { position, intensity: common::Rgb::new(3.0, 2.5, 2.0) };
+    let point = LightKind::Point { position, intensity: common::Rgb::new(3.0, 2.5, 2.0) };
     [
         ("diffuse", diffuse_room()),
         ("specular", specular_room()),
@@ -209,7 +209,7 @@ fn pool(source: &mut Source<'_, '_>, tracer: &Tracer<'_>, key: PoolKey, flaw: Fl
     let mut sampler = BidirectionalSampler::new(tracer);
     let weight = |number| {
         let mut rng = Rng::new(key.seed, Stream::Bootstrap, key.number << 32 | number);
-        let aim = Aim::from_numbers(tracer, &mut rng);
+        let aim = CameraSample::from_numbers(tracer, &mut rng);
         let mut sum = 0.0;
         sampler.sample(tracer, aim, &mut rng, |path, weight| {
             if Base::Path.density_sum(path) > 0.0 {
@@ -236,7 +236,7 @@ fn seeds(
     let numbers = pool.resample(CHAINS, &mut choice);
     let pick = |(number, _): (u64, f64)| {
         let mut rng = Rng::new(key.seed, Stream::Bootstrap, key.number << 32 | number);
-        let aim = Aim::from_numbers(tracer, &mut rng);
+        let aim = CameraSample::from_numbers(tracer, &mut rng);
         let (mut chosen, mut sum) = (None, 0.0);
         sampler.sample(tracer, aim, &mut rng, |path, weight| {
             if Base::Path.density_sum(path) > 0.0 {
@@ -308,7 +308,7 @@ fn grouped(films: &[Film]) -> Vec<Film> {
 #[test]
 fn small_replicates_have_the_right_mean() {
     let position = DVec3::new(0.3, 0.7, 0.2);
-    let point = Glow::Point { position, intensity: common::Rgb::grey(3.0) };
+    let point = LightKind::Point { position, intensity: common::Rgb::grey(3.0) };
     // All of the light that the ball throws on the floor is out of a path tracer's reach.
     let glass = open_room().sphere(GLASS, common::Rgb::BLACK, [0.1, -0.2, 0.0], 0.5);
     let glass = glass.light(point).film(4, 4).build();

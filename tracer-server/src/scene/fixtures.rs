@@ -8,7 +8,8 @@ use common::{CameraPose, Rgb};
 use glam::{DMat3, DVec3, Vec3, Vec3Swizzles as _};
 
 use super::{
-    Glow, LightDescription, Material, Mesh, Scene, SceneDescription, SkyImage, Sphere, ThinLens,
+    LightDescription, LightKind, Material, Mesh, Scene, SceneDescription, SkyImage, Sphere,
+    ThinLens,
 };
 use crate::bsdf::{
     BsdfDescription, ColorInput, ConductorDescription, DielectricDescription, Fresnel,
@@ -94,9 +95,9 @@ impl Fixture {
             .quad(front, emission, [-1., -1., 1.], [0., 2., 0.], [2., 0., 0.])
     }
 
-    pub(crate) fn light(mut self, glow: Glow) -> Self {
+    pub(crate) fn light(mut self, kind: LightKind) -> Self {
         let name = format!("light {}", self.description.lights.len());
-        self.description.lights.push(LightDescription { name, glow });
+        self.description.lights.push(LightDescription { name, kind });
         self
     }
 
@@ -133,8 +134,8 @@ impl Fixture {
             lens.focus *= factor;
         }
         for light in &mut description.lights {
-            if let Glow::Point { position, intensity } | Glow::Spot { position, intensity, .. } =
-                &mut light.glow
+            if let LightKind::Point { position, intensity }
+            | LightKind::Spot { position, intensity, .. } = &mut light.kind
             {
                 *position *= factor;
                 *intensity = *intensity * (factor * factor);
@@ -336,7 +337,7 @@ pub(crate) fn open_room_with_glass() -> Fixture {
 }
 
 /// A sky with a bright spot.
-pub(crate) fn image_sky() -> Glow {
+pub(crate) fn image_sky() -> LightKind {
     let (width, height) = (16, 8);
     let mut texels = vec![[0.4, 0.5, 0.7]; width * height];
     texels[2 * width + 7] = [90.0, 80.0, 50.0];
@@ -344,7 +345,7 @@ pub(crate) fn image_sky() -> Glow {
     texels[5 * width..].fill([0.1, 0.08, 0.05]);
     let rotation = DMat3::from_rotation_y(0.4);
     let image = Some(SkyImage { width, height, texels });
-    Glow::Environment { radiance: Rgb::new(1.0, 1.0, 0.9), image, rotation }
+    LightKind::Environment { radiance: Rgb::new(1.0, 1.0, 0.9), image, rotation }
 }
 
 /// One fixture with each kind of light, and one with a lens that has an area.
@@ -352,17 +353,17 @@ pub(crate) fn every_light() -> Vec<(&'static str, Fixture)> {
     let position = DVec3::new(0.3, 0.7, 0.2);
     let direction = DVec3::new(-0.3, -1.0, -0.3);
     let intensity = Rgb::new(3.0, 2.5, 2.0);
-    let spot = Glow::Spot { position, direction, intensity, cutoff: 50.0, beam: 25.0 };
-    let plain = Glow::Environment {
+    let spot = LightKind::Spot { position, direction, intensity, cutoff: 50.0, beam: 25.0 };
+    let plain = LightKind::Environment {
         radiance: Rgb::new(0.6, 0.7, 0.9),
         image: None,
         rotation: DMat3::IDENTITY,
     };
     vec![
-        ("point", open_room().light(Glow::Point { position, intensity })),
+        ("point", open_room().light(LightKind::Point { position, intensity })),
         ("spot", open_room().light(spot)),
-        ("sun", open_room().light(Glow::Directional { direction, irradiance: intensity })),
-        ("point and glass", open_room_with_glass().light(Glow::Point { position, intensity })),
+        ("sun", open_room().light(LightKind::Directional { direction, irradiance: intensity })),
+        ("point and glass", open_room_with_glass().light(LightKind::Point { position, intensity })),
         ("even sky", open_room_with_glass().light(plain)),
         ("image sky", open_room_with_glass().light(image_sky())),
         ("lens", specular_room().lens(0.05, 1.6).max_edges(5)),
@@ -372,14 +373,14 @@ pub(crate) fn every_light() -> Vec<(&'static str, Fixture)> {
 #[test]
 fn every_kind_of_light_is_there() {
     // A new variant does not compile here: give it the next number, and add it to the lights.
-    let number = |glow: &Glow| match glow {
-        Glow::Point { .. } => 0,
-        Glow::Spot { .. } => 1,
-        Glow::Directional { .. } => 2,
-        Glow::Environment { .. } => 3,
+    let number = |kind: &LightKind| match kind {
+        LightKind::Point { .. } => 0,
+        LightKind::Spot { .. } => 1,
+        LightKind::Directional { .. } => 2,
+        LightKind::Environment { .. } => 3,
     };
     let lights = every_light().into_iter().flat_map(|(_, fixture)| fixture.description.lights);
-    let mut seen: Vec<usize> = lights.map(|light| number(&light.glow)).collect();
+    let mut seen: Vec<usize> = lights.map(|light| number(&light.kind)).collect();
     seen.sort_unstable();
     seen.dedup();
     assert_eq!(seen, [0, 1, 2, 3], "a kind of light is not among them");

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use super::builtin::BUILTINS;
 use super::load::{Loaded, load};
-use super::{Glow, SceneDescription, ThinLens, Wish};
+use super::{LightKind, SceneDescription, ThinLens, Wish};
 use crate::bsdf::{BsdfDescription, DielectricDescription};
 
 /// A smallest scene that loads.
@@ -389,17 +389,17 @@ fn lit_by(light: &str) -> String {
 
 #[test]
 fn lights_without_a_surface_are_read() {
-    let glow = |light: &str| description(&lit_by(light)).lights[0].glow.clone();
-    let point = glow("point = { position = [0, 1, 2], intensity = 3 }");
-    assert!(matches!(point, Glow::Point { intensity, .. } if intensity.g == 3.0), "{point:?}");
-    let spot = glow("spot = { position = [0, 2, 0], target = [0, 0, 0], intensity = [1, 2, 3] }");
-    assert!(matches!(spot, Glow::Spot { cutoff: 30.0, beam: 22.5, .. }), "{spot:?}");
-    let sun = glow("directional = { direction = [0, -2, 0], irradiance = 1 }");
-    assert!(matches!(sun, Glow::Directional { .. }), "{sun:?}");
-    let sky = glow("environment = { rotate = [{ axis = [0, 1, 0], degrees = 90 }] }");
+    let kind = |light: &str| description(&lit_by(light)).lights[0].kind.clone();
+    let point = kind("point = { position = [0, 1, 2], intensity = 3 }");
+    assert!(matches!(point, LightKind::Point { intensity, .. } if intensity.g == 3.0), "{point:?}");
+    let spot = kind("spot = { position = [0, 2, 0], target = [0, 0, 0], intensity = [1, 2, 3] }");
+    assert!(matches!(spot, LightKind::Spot { cutoff: 30.0, beam: 22.5, .. }), "{spot:?}");
+    let sun = kind("directional = { direction = [0, -2, 0], irradiance = 1 }");
+    assert!(matches!(sun, LightKind::Directional { .. }), "{sun:?}");
+    let sky = kind("environment = { rotate = [{ axis = [0, 1, 0], degrees = 90 }] }");
     let turned =
         |rotation: glam::DMat3| (rotation * glam::DVec3::Z - glam::DVec3::X).length() < 1e-12;
-    assert!(matches!(sky, Glow::Environment { rotation, .. } if turned(rotation)), "{sky:?}");
+    assert!(matches!(sky, LightKind::Environment { rotation, .. } if turned(rotation)), "{sky:?}");
     let lens = GOOD.replace("vertical_fov = 30", "vertical_fov = 30\nlens_radius = 0.1");
     assert_eq!(
         description(&lens).lens,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{Base, Equalised, Selective, Target};
 use crate::math::{Rng, Stream};
-use crate::path::{Aim, BidirectionalSampler, Path};
+use crate::path::{BidirectionalSampler, CameraSample, Path};
 use crate::scene::fixtures::{every_light, specular_room};
 use crate::scene::{Scene, Tracer};
 
@@ -17,7 +17,7 @@ fn census(scene: &Scene, mut visit: impl FnMut(&Path, f64)) {
     let mut sampler = BidirectionalSampler::new(&scene);
     let mut rng = Rng::new(77, Stream::Laboratory, 0);
     for _ in 0..2000 {
-        let aim = Aim::from_numbers(&scene, &mut rng);
+        let aim = CameraSample::from_numbers(&scene, &mut rng);
         sampler.sample(&scene, aim, &mut rng, &mut visit);
     }
 }

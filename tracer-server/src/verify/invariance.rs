@@ -12,7 +12,7 @@ use crate::chain::acceptance;
 use crate::math::{Rng, Stream};
 use crate::mutation::{Proposal, Strategy};
 use crate::parallel;
-use crate::path::{Aim, BidirectionalSampler, ClassKey, Draft, Failure, Path};
+use crate::path::{BidirectionalSampler, CameraSample, ClassKey, Draft, Failure, Path};
 use crate::scene::{Scene, Tracer};
 use crate::target::Target;
 
@@ -241,7 +241,7 @@ impl<'s> Bench<'s> {
         let key = |index: u64| run.number << 44 | index << 1;
         let mut rng = Rng::new(run.seed, Stream::Verification, key(number));
         for sample in 0..CHUNK {
-            let aim = Aim::from_numbers(scene, &mut rng);
+            let aim = CameraSample::from_numbers(scene, &mut rng);
             hand.rng = Rng::new(run.seed, Stream::Verification, key(number * CHUNK + sample) | 1);
             hand.sums.fill(0.0);
             sampler.sample(scene, aim, &mut rng, |path, weight| {

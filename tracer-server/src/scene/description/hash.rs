@@ -3,7 +3,7 @@
 use common::Rgb;
 use glam::DVec3;
 
-use super::{Glow, SceneDescription};
+use super::{LightKind, SceneDescription};
 use crate::bsdf::{BsdfDescription, ColorInput, NumberInput, Value};
 
 /// Hex digest of everything that the picture depends on, names included.
@@ -43,7 +43,7 @@ pub(crate) fn digest(description: &SceneDescription) -> String {
     }
     for light in &description.lights {
         h.text(&light.name);
-        h.glow(&light.glow);
+        h.kind(&light.kind);
     }
     h.0.finalize().to_hex()[..32].to_owned()
 }
@@ -89,25 +89,25 @@ impl Digest {
         }
     }
 
-    fn glow(&mut self, glow: &Glow) {
-        self.color(glow.color());
-        match glow {
-            Glow::Point { position, .. } => {
+    fn kind(&mut self, kind: &LightKind) {
+        self.color(kind.color());
+        match kind {
+            LightKind::Point { position, .. } => {
                 self.text("point");
                 self.point(*position);
             }
-            Glow::Spot { position, direction, cutoff, beam, .. } => {
+            LightKind::Spot { position, direction, cutoff, beam, .. } => {
                 self.text("spot");
                 self.point(*position);
                 self.point(*direction);
                 self.number(*cutoff);
                 self.number(*beam);
             }
-            Glow::Directional { direction, .. } => {
+            LightKind::Directional { direction, .. } => {
                 self.text("directional");
                 self.point(*direction);
             }
-            Glow::Environment { image, rotation, .. } => {
+            LightKind::Environment { image, rotation, .. } => {
                 self.text("environment");
                 rotation.to_cols_array().into_iter().for_each(|x| self.number(x));
                 if let Some(image) = image {

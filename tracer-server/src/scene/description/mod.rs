@@ -12,7 +12,7 @@ use glam::{DVec3, Vec2, Vec3};
 
 use crate::bsdf::{ColorInput, Inputs, NumberInput};
 pub(crate) use hash::digest;
-pub use light::{Glow, LightDescription, SkyImage};
+pub use light::{LightDescription, LightKind, SkyImage};
 pub use material::{Coding, Material, Texture};
 
 /// Longest path that any scene may ask for, in edges.

@@ -11,7 +11,7 @@ use crate::bsdf::{
     NumberInput, PlasticDescription,
 };
 use crate::scene::load::{Loaded, load};
-use crate::scene::{Glow, Mesh, Scene, ThinLens};
+use crate::scene::{LightKind, Mesh, Scene, ThinLens};
 
 /// A scene that uses every kind of value, a line each.
 const GOOD: &str = r#"<?xml version="1.0"?>
@@ -469,20 +469,23 @@ fn emitters_without_a_shape_and_lenses_are_read() {
             <emitter type=\"constant\"><float name=\"radiance\" value=\"0.5\"/></emitter></scene>");
     let loaded = good(&text);
     assert_eq!(loaded.description.lens, Some(ThinLens { radius: 0.2, focus: 5.0 }));
-    let glows: Vec<&Glow> = loaded.description.lights.iter().map(|light| &light.glow).collect();
-    let [point, spot, sun, sky] = glows.as_slice() else { panic!("{glows:?}") };
+    let kinds: Vec<&LightKind> =
+        loaded.description.lights.iter().map(|light| &light.kind).collect();
+    let [point, spot, sun, sky] = kinds.as_slice() else { panic!("{kinds:?}") };
     let at = DVec3::new(1.0, 2.0, 3.0);
     assert!(
-        matches!(point, Glow::Point { position, intensity } if *position == at && intensity.b == 3.0)
+        matches!(point, LightKind::Point { position, intensity } if *position == at && intensity.b == 3.0)
     );
     let down = |direction: DVec3| (direction.normalize() + DVec3::Y).length() < 1e-12;
     assert!(
-        matches!(spot, Glow::Spot { direction, cutoff: 40.0, beam: 30.0, .. } if down(*direction))
+        matches!(spot, LightKind::Spot { direction, cutoff: 40.0, beam: 30.0, .. } if down(*direction))
     );
     assert!(
-        matches!(sun, Glow::Directional { direction, irradiance } if down(*direction) && irradiance.r == 2.0)
+        matches!(sun, LightKind::Directional { direction, irradiance } if down(*direction) && irradiance.r == 2.0)
     );
-    assert!(matches!(sky, Glow::Environment { image: None, radiance, .. } if radiance.g == 0.5));
+    assert!(
+        matches!(sky, LightKind::Environment { image: None, radiance, .. } if radiance.g == 0.5)
+    );
     assert!(Scene::new(&loaded.description).is_ok(), "sound");
 }
 

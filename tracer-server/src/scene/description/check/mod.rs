@@ -289,7 +289,7 @@ fn check_whole(scene: &SceneDescription, triangles: usize) -> Result<(), Problem
     };
     let lit = scene.meshes.iter().any(|mesh| mesh.materials.iter().any(emits))
         || scene.spheres.iter().any(|sphere| emits(&sphere.material))
-        || scene.lights.iter().any(|light| !light.glow.is_dark());
+        || scene.lights.iter().any(|light| !light.kind.is_dark());
     if lit {
         return Ok(());
     }
