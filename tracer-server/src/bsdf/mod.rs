@@ -14,8 +14,6 @@ mod mirror;
 pub(crate) mod mitsuba;
 mod model;
 mod plastic;
-mod rough_dielectric;
-mod rough_plastic;
 
 #[cfg(test)]
 mod laws;
@@ -27,16 +25,14 @@ use glam::DVec3;
 
 use crate::math::Rng;
 pub use conductor::{ConductorDescription, RoughConductor};
-pub use dielectric::{Dielectric, DielectricDescription};
+pub use dielectric::{Dielectric, DielectricDescription, RoughDielectric};
 pub use fresnel::Fresnel;
 pub use ggx::Ggx;
 pub use lambert::{Lambert, LambertDescription};
 pub use local::Local;
 pub use mirror::{Mirror, MirrorDescription};
 pub use model::{ColorInput, Given, Inputs, Model, Named, NumberInput, Parameter, Range, Value};
-pub use plastic::{Plastic, PlasticDescription};
-pub use rough_dielectric::RoughDielectric;
-pub use rough_plastic::RoughPlastic;
+pub use plastic::{Plastic, PlasticDescription, RoughPlastic};
 
 /// Everything a path needs of one scattering vertex, given both neighbours and the event.
 ///

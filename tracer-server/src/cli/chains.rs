@@ -6,7 +6,7 @@ use anyhow::{Context as _, ensure};
 use clap::builder::RangedU64ValueParser;
 use clap::{ArgAction, Args, ValueEnum};
 
-use super::render::IntegratorName;
+use super::integrator::IntegratorName;
 use crate::chain::EnsembleSettings;
 use crate::mutation::{Form, KINDS, Kind, Mixture, Parameter, StrategyOptions};
 use crate::render::Integrator;

@@ -8,6 +8,7 @@ pub mod chains;
 pub mod door;
 pub mod info;
 pub mod input;
+pub mod integrator;
 mod inventory;
 pub mod merge;
 mod meter;

@@ -18,8 +18,9 @@ use serde::Serialize;
 
 use super::chains::ChainArgs;
 use super::input::{self, FilmSize};
+use super::integrator::IntegratorName;
 use super::meter::Meter;
-use super::render::{DialArgs, IntegratorName, PrimaryArgs, check_reference, seconds};
+use super::render::{DialArgs, PrimaryArgs, check_reference, seconds};
 use crate::chain::EnsembleSettings;
 use crate::image_file;
 use crate::integrator::pssmlt::PrimarySettings;

@@ -6,7 +6,7 @@
 
 use tests::Accumulator;
 
-use super::flow::Flows;
+use super::flow::{Flows, MIN_MOVES};
 use super::functionals;
 use crate::chain::acceptance;
 use crate::math::{Rng, Stream};
@@ -18,8 +18,6 @@ use crate::target::Target;
 
 /// Samples that one stream of random numbers serves.
 const CHUNK: u64 = 500;
-/// A quantity is judged when at least this many proposals moved it each way.
-pub const MIN_MOVES: u64 = 200;
 /// A quantity is judged when its changes come from at least this many samples of equal weight: a
 /// mean of few heavy samples is not normally distributed.
 const MIN_EFFECTIVE: f64 = 100.0;
@@ -248,7 +246,8 @@ impl<'s> Bench<'s> {
                 // Samples stand for the light, and with this factor for what the chain visits.
                 let weight = weight * walk.target.importance(path).rho;
                 if weight > 0.0 {
-                    hand.try_all(scene, (path, weight), walk, run.test, &mut gathered);
+                    let sample = Sample { path, weight };
+                    hand.try_all(scene, sample, walk, run.test, &mut gathered);
                 }
             });
             for (watched, &sum) in gathered.watched.iter_mut().zip(&hand.sums) {
@@ -261,12 +260,19 @@ impl<'s> Bench<'s> {
     }
 }
 
+/// A path that stands for so much of what the chain visits.
+#[derive(Clone, Copy)]
+struct Sample<'a> {
+    path: &'a Path,
+    weight: f64,
+}
+
 impl Hand {
     /// Mutates a path as often as the test asks, and takes note of where it goes.
     fn try_all(
         &mut self,
         scene: &Tracer<'_>,
-        (path, weight): (&Path, f64),
+        Sample { path, weight }: Sample<'_>,
         walk: Walk<'_>,
         test: Test,
         gathered: &mut Gathered,

@@ -15,7 +15,7 @@ use serde::Serialize;
 
 use crate::chain::{EnsembleSettings, Kernel};
 use crate::mutation::{
-    Independent, KINDS, Mixture, MixtureBasis, Mutation as _, Strategy, StrategyOptions, key_of,
+    Independent, KINDS, Mixture, MixtureBasis, Mutation as _, StrategyOptions, key_of,
 };
 use crate::scene::Scene;
 use crate::target::Target;
@@ -140,8 +140,7 @@ pub fn verify(
             let share = (done as f64 + share) / parts as f64;
             on_progress(share, &format!("{}: {law}", strategy.name()));
         };
-        let family = LAWS * mixture.len() + 1;
-        let flows = verify_one(scene, (index, strategy), settings, family, &mut report, &progress);
+        let flows = verify_one(scene, &mixture, index, settings, &mut report, &progress);
         if strategy.name() != Independent::NAME {
             joined.merge(&flows.flows);
         }
@@ -151,7 +150,7 @@ pub fn verify(
         report.findings.push(ergodicity::connectedness(&census, &joined, samples));
         let (before, parts) = (wanted.len() as f64, parts as f64);
         let on_share = |share: f64, what: &str| on_progress((before + share) / parts, what);
-        verify_mixture(scene, (&census, &mixture), settings, &mut report, &on_share);
+        verify_mixture(scene, &census, &mixture, settings, &mut report, &on_share);
     }
     on_progress(1.0, "done");
     Ok(report)
@@ -176,7 +175,8 @@ fn empty_report(scene: &Scene, settings: &Settings, mixture: &Mixture) -> Report
 /// work done, from 0 to 2.
 fn verify_mixture(
     scene: &Scene,
-    (census, mixture): (&Census, &Mixture),
+    census: &Census,
+    mixture: &Mixture,
     settings: &Settings,
     report: &mut Report,
     on_share: &dyn Fn(f64, &str),
@@ -213,16 +213,17 @@ fn select(mixture: &Mixture, names: &[String]) -> Result<Vec<usize>, VerifyError
     Ok(if names.is_empty() { (0..mixture.len()).collect() } else { found })
 }
 
-/// Puts one strategy to all tests, and adds what was found to the report.
+/// Puts one strategy of the mixture to all tests, and adds what was found to the report.
 fn verify_one(
     scene: &Scene,
-    (index, strategy): (usize, &Strategy),
+    mixture: &Mixture,
+    index: usize,
     settings: &Settings,
-    family: usize,
     report: &mut Report,
     on_progress: &(dyn Fn(f64, &str) + Sync),
 ) -> Gathered {
     let &Settings { samples, seed, threads, .. } = settings;
+    let (strategy, family) = (mixture.get(index), LAWS * mixture.len() + 1);
     let propose = by_itself(strategy);
     let walk = Walk { propose: &propose, target: &Target::Whole };
     let subject = Subject { name: strategy.name(), walk, family };

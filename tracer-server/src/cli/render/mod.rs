@@ -17,6 +17,7 @@ use host::file::Place;
 
 use super::chains::ChainArgs;
 use super::input::{self, FilmSize};
+use super::integrator::IntegratorName;
 use super::meter::Meter;
 use super::stopper::Stopper;
 use crate::film::Film;
@@ -137,33 +138,6 @@ impl PrimaryArgs {
 fn share(text: &str) -> Result<f64, String> {
     let share = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
     share.ok_or_else(|| "give a number from 0 to 1".to_owned())
-}
-
-/// The integrators by the names they have on the command line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum IntegratorName {
-    /// Base samples for what they find well, Metropolis light transport for the rest.
-    Auto,
-    /// Metropolis light transport.
-    Mlt,
-    /// Metropolis light transport over the random numbers of a renderer.
-    Pssmlt,
-    /// Bidirectional path tracing.
-    Bdpt,
-    /// Path tracing with light sampling.
-    Path,
-}
-
-impl From<IntegratorName> for Integrator {
-    fn from(name: IntegratorName) -> Self {
-        match name {
-            IntegratorName::Auto => Self::Auto,
-            IntegratorName::Mlt => Self::Mlt,
-            IntegratorName::Pssmlt => Self::Pssmlt,
-            IntegratorName::Bdpt => Self::Bdpt,
-            IntegratorName::Path => Self::Path,
-        }
-    }
 }
 
 /// A positive number of seconds.

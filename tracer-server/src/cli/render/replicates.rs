@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::ensure;
 use clap::{Args, ValueEnum};
 
-use super::IntegratorName;
+use crate::cli::integrator::IntegratorName;
 use crate::replicate::{Dial, Part, Selection};
 use crate::target::Base;
 

@@ -3,11 +3,11 @@
 use common::{Event, Rgb};
 use glam::DVec3;
 
-use super::conductor::facing;
-use super::dielectric::refract;
+use super::smooth::{Dielectric, refract};
+use crate::bsdf::conductor::facing;
 #[cfg(test)]
-use super::laws::Specimens;
-use super::{Dielectric, Ggx, Scatter, Scattering, fresnel, reflect};
+use crate::bsdf::laws::Specimens;
+use crate::bsdf::{Ggx, Scatter, Scattering, fresnel, reflect};
 use crate::math::{Rng, below_one};
 
 /// Reflects and refracts by microfacets that are smooth boundaries, once: light that would meet a

@@ -27,8 +27,8 @@ const LEAST_SAMPLES: u64 = 1 << 12;
 /// Relative standard error of `b` that is told of until somebody asks for another.
 const USUAL_PRECISION: f64 = 0.01;
 
-/// The chains of a scene.
-pub(super) struct Plant<'a> {
+/// Runs the chains of a scene round by round, and does in between what the driver asks for.
+pub(super) struct ChainRunner<'a> {
     scene: &'a Scene,
     settings: EnsembleSettings,
     hub: &'a Hub,
@@ -42,12 +42,12 @@ pub(super) struct Plant<'a> {
     /// What was changed last, and by whom.
     change: (String, Option<Author>),
     /// Viewers have not been told of a change yet.
-    untold: bool,
+    is_change_unsent: bool,
     /// A reply that found no room; no order is followed before it is given.
-    unsaid: Option<(u64, OrderReply)>,
+    unsent_reply: Option<(u64, OrderReply)>,
 }
 
-impl<'a> Plant<'a> {
+impl<'a> ChainRunner<'a> {
     /// Seeds the chains.
     pub(super) fn new(
         scene: &'a Scene,
@@ -70,8 +70,8 @@ impl<'a> Plant<'a> {
             epoch: 0,
             running: true,
             change: (String::new(), None),
-            untold: true,
-            unsaid: None,
+            is_change_unsent: true,
+            unsent_reply: None,
         }
     }
 
@@ -85,7 +85,7 @@ impl<'a> Plant<'a> {
             let works = self.running && self.ensemble.chain_count() > 0;
             // Chains that run look for orders between two rounds, and others wait for them.
             let wait = if works { Duration::ZERO } else { PAUSE };
-            let order = if self.unsaid.is_none() {
+            let order = if self.unsent_reply.is_none() {
                 orders.recv_timeout(wait)
             } else {
                 std::thread::sleep(wait);
@@ -93,7 +93,7 @@ impl<'a> Plant<'a> {
             };
             match order {
                 Ok(order) => {
-                    self.follow(order);
+                    self.answer(order);
                     continue;
                 }
                 Err(RecvTimeoutError::Timeout) => {}
@@ -128,24 +128,24 @@ impl<'a> Plant<'a> {
         self.reporter.report(self.scene, &self.ensemble, self.epoch, self.hub);
     }
 
-    fn follow(&mut self, order: Envelope<ChainCommand>) {
+    fn answer(&mut self, order: Envelope<ChainCommand>) {
         let Envelope { author, request, command } = order;
         let session = author.session;
-        let error = match self.obey(command, &author) {
+        let error = match self.carry_out(command, &author) {
             Ok(change) => {
                 info!(session, viewer = author.name, "{change}");
                 self.change = (change, Some(author));
-                self.untold = true;
+                self.is_change_unsent = true;
                 None
             }
             Err(error) => Some(error),
         };
-        self.unsaid = Some((session, OrderReply { request, error }));
+        self.unsent_reply = Some((session, OrderReply { request, error }));
         self.tell();
     }
 
     /// Does what is asked for, and says in a few words what that was.
-    fn obey(&mut self, command: ChainCommand, author: &Author) -> Result<String, String> {
+    fn carry_out(&mut self, command: ChainCommand, author: &Author) -> Result<String, String> {
         match command {
             ChainCommand::Pause => {
                 self.running = false;
@@ -228,13 +228,13 @@ impl<'a> Plant<'a> {
 
     /// Answers the last order and tells everybody of the last change; where the way is full, later.
     fn tell(&mut self) {
-        if let Some((session, reply)) = &self.unsaid
+        if let Some((session, reply)) = &self.unsent_reply
             && self.hub.publish_reply(*session, reply.clone())
         {
-            self.unsaid = None;
+            self.unsent_reply = None;
         }
-        if self.untold {
-            self.untold = !self.hub.publish_chains(self.state());
+        if self.is_change_unsent {
+            self.is_change_unsent = !self.hub.publish_chains(self.state());
         }
     }
 }

@@ -5,11 +5,11 @@ use std::f64::consts::FRAC_1_PI;
 use common::{Event, Rgb};
 use glam::DVec3;
 
-use super::conductor::facing;
+use super::smooth::untinted;
+use crate::bsdf::conductor::facing;
 #[cfg(test)]
-use super::laws::Specimens;
-use super::plastic::untinted;
-use super::{Fresnel, Ggx, Scatter, Scattering, reflect};
+use crate::bsdf::laws::Specimens;
+use crate::bsdf::{Fresnel, Ggx, Scatter, Scattering, reflect};
 use crate::math::{Rng, below_one, cosine_hemisphere, invert_cosine_hemisphere};
 
 /// A coat of microfacets over a diffuse base: the sum of a glossy and a diffuse lobe.
