@@ -19,7 +19,7 @@ impl Source {
     }
 }
 
-/// Folders that hold nothing of ours.
+/// What in the root is none of ours.
 const SKIPPED: [&str; 2] = [".git", "target"];
 
 /// The folder that holds the workspace's `Cargo.toml`.
@@ -32,7 +32,7 @@ pub(crate) fn root() -> PathBuf {
 pub(crate) fn texts() -> Vec<Source> {
     let root = root();
     let mut paths = Vec::new();
-    collect(&root, &mut paths);
+    collect(&root, &SKIPPED, &mut paths);
     paths.sort();
     let read = |path: PathBuf| {
         let text = fs::read_to_string(&path).ok()?;
@@ -59,16 +59,16 @@ pub(crate) fn text(path: &str) -> String {
     fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-fn collect(folder: &Path, paths: &mut Vec<PathBuf>) {
+fn collect(folder: &Path, skipped: &[&str], paths: &mut Vec<PathBuf>) {
     let entries = fs::read_dir(folder).expect("a folder of the repository can be listed");
     for entry in entries {
         let path = entry.expect("an entry of a folder can be read").path();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        if SKIPPED.contains(&name.as_ref()) {
+        if skipped.contains(&name.as_ref()) {
             continue;
         }
         if path.is_dir() {
-            collect(&path, paths);
+            collect(&path, &[], paths);
         } else {
             paths.push(path);
         }

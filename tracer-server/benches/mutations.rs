@@ -15,7 +15,7 @@ use cpu_time::ProcessTime;
 use tracer_server::chain::{Ensemble, EnsembleSettings};
 use tracer_server::math::{Rng, Stream};
 use tracer_server::mutation::{KINDS, OptionError, StrategyOptions};
-use tracer_server::path::{Aim, BidirectionalSampler, Vertex};
+use tracer_server::path::{BidirectionalSampler, CameraSample, Vertex};
 use tracer_server::scene::load::load;
 use tracer_server::scene::{Scene, Tracer};
 
@@ -92,7 +92,6 @@ fn measure(
         threads: 1,
         strategies: *options,
         bootstrap_samples: 1 << 16,
-        precision: 0.003,
     };
     let mut ensemble = Ensemble::new(scene, &settings, |_| ());
     ensemble.advance(scene, STEPS, None);
@@ -121,7 +120,7 @@ fn ray_rates(scene: &Scene) -> (f64, f64) {
     let mut rng = Rng::new(1, Stream::Laboratory, 0);
     let mut edges: Vec<(Vertex, Vertex)> = Vec::new();
     while edges.len() < 200_000 {
-        let aim = Aim::from_numbers(&tracer, &mut rng);
+        let aim = CameraSample::from_numbers(&tracer, &mut rng);
         sampler.sample(&tracer, aim, &mut rng, |path, _| {
             // One edge of each path, so that successive rays have nothing in common.
             let j = rng_free_index(path.edge_count(), edges.len());

@@ -83,10 +83,15 @@ impl Daemon {
         let server =
             Server::start(options.listen, info, options.limits, steering.clone(), security)?;
         let (hub, archive) = (server.hub(), Arc::new(Archive::new(options.archive_bytes)));
-        let subject = (Arc::clone(&scene), options.ensemble.seed);
-        let shelf = Arc::clone(&archive);
-        let explorer = Explorer::start(subject, shelf, hub.clone(), steering, orders.explorer)
-            .map_err(DaemonError::Engine)?;
+        let explorer = Explorer::start(
+            Arc::clone(&scene),
+            options.ensemble.seed,
+            Arc::clone(&archive),
+            hub.clone(),
+            steering,
+            orders.explorer,
+        )
+        .map_err(DaemonError::Engine)?;
         let engine = Engine::start(scene, &options.ensemble, hub.clone(), archive, orders.chains)
             .map_err(DaemonError::Engine)?;
         Ok(Self { server, _explorer: explorer, _engine: engine })

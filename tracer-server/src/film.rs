@@ -16,6 +16,17 @@ impl Film {
         Self { width, height, pixels: vec![Rgb::BLACK; width as usize * height as usize] }
     }
 
+    /// A film with these pixels, row by row from the top left.
+    pub fn of(width: u32, height: u32, pixels: Vec<Rgb>) -> Self {
+        debug_assert_eq!(pixels.len(), width as usize * height as usize, "one colour a pixel");
+        Self { width, height, pixels }
+    }
+
+    /// Makes all of it black.
+    pub fn clear(&mut self) {
+        self.pixels.fill(Rgb::BLACK);
+    }
+
     /// Width in pixels.
     pub fn width(&self) -> u32 {
         self.width
@@ -42,6 +53,11 @@ impl Film {
         self.pixels[pixel] += color;
     }
 
+    /// Replaces what is in the pixel with index `pixel`.
+    pub fn set(&mut self, pixel: usize, color: Rgb) {
+        self.pixels[pixel] = color;
+    }
+
     /// The rows from the top, for workers that own one each.
     pub fn rows_mut(&mut self) -> std::slice::ChunksMut<'_, Rgb> {
         self.pixels.chunks_mut(self.width as usize)
@@ -59,6 +75,13 @@ impl Film {
     pub fn add(&mut self, other: &Self) {
         for (sum, &pixel) in self.pixels.iter_mut().zip(&other.pixels) {
             *sum += pixel;
+        }
+    }
+
+    /// Adds another film of the same size times a factor, pixel by pixel.
+    pub fn add_scaled(&mut self, other: &Self, factor: f64) {
+        for (sum, &pixel) in self.pixels.iter_mut().zip(&other.pixels) {
+            *sum += pixel * factor;
         }
     }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use common::Rgb;
 use host::file::{FileError, Output, Place};
-use host::picture::{self, Picture, PictureError};
+use host::picture::{self, Extras, Picture, PictureError, Plane};
 use image::{ImageBuffer, ImageFormat, Rgb as Pixel8};
 use thiserror::Error;
 
@@ -81,14 +81,19 @@ impl Destination {
         self.place.is_stdout()
     }
 
-    /// Puts `image` there. `metadata` goes into EXR headers.
-    pub fn write(&self, image: &Film, metadata: &[(String, String)]) -> Result<(), ImageError> {
+    /// Puts `image` there. `planes` and `metadata` go into EXR files only.
+    pub fn write(
+        &self,
+        image: &Film,
+        planes: &[Plane],
+        metadata: &[(String, String)],
+    ) -> Result<(), ImageError> {
         let file = || self.path().display().to_string();
         self.place.write(|output| match self.format {
             Format::Exr => {
                 let size = [image.width(), image.height()].map(|side| side as usize);
                 let pixel = |x: usize, y: usize| image.pixels()[y * size[0] + x].to_f32();
-                picture::write_exr(output, size, pixel, metadata)
+                picture::write_exr(output, size, pixel, &Extras { planes, metadata })
                     .map_err(|problem| ImageError::Exr { file: file(), problem })
             }
             Format::Png => write_png(output, image)
@@ -111,7 +116,7 @@ impl Format {
 
 /// Writes `image` in the format of the file's name. `metadata` goes into EXR headers.
 pub fn write(path: &Path, image: &Film, metadata: &[(String, String)]) -> Result<(), ImageError> {
-    Destination::find(path)?.write(image, metadata)
+    Destination::find(path)?.write(image, &[], metadata)
 }
 
 /// The exposure that brings the brighter parts of an image just below white: one over its 98th
@@ -168,12 +173,17 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("gradient.exr");
         let metadata = [("lvis.seed".to_owned(), "7".to_owned())];
-        write(&path, &gradient(), &metadata).expect("an EXR file is written");
+        let errors = Plane { name: "error", values: (0..15).map(|i| i as f32).collect() };
+        let place = Destination::find(&path).expect("a place");
+        place.write(&gradient(), &[errors], &metadata).expect("an EXR file is written");
         let back = read_exr(&path).expect("and read");
         for (a, b) in back.pixels().iter().zip(gradient().pixels()) {
             assert_eq!(a.to_f32(), b.to_f32(), "pixels survive");
         }
         let meta = exr::meta::MetaData::read_from_file(&path, false).expect("the header is read");
+        let channels = &meta.headers[0].channels.list;
+        let names: Vec<String> = channels.iter().map(|c| c.name.to_string()).collect();
+        assert_eq!(names, ["B", "G", "R", "error.Y"], "channels");
         let seed = meta.headers[0].own_attributes.other.get(&Text::from("lvis.seed"));
         assert_eq!(seed, Some(&AttributeValue::Text(Text::from("7"))), "metadata survives");
     }

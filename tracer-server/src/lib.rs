@@ -1,5 +1,10 @@
 //! The tracer: scenes, paths, mutations, chains, and the daemon that streams them.
 
+// A new variant must be looked at wherever variants are told apart; tests may leave out what they do
+// not mean.
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
+pub mod base;
 pub mod bsdf;
 pub mod chain;
 pub mod cli;
@@ -15,9 +20,11 @@ pub mod mutation;
 pub mod parallel;
 pub mod path;
 pub mod render;
+pub mod replicate;
 pub mod scene;
 pub mod service;
 pub mod steering;
+pub mod target;
 pub mod trade;
 pub mod verify;
 

@@ -6,12 +6,15 @@ use std::alloc::System;
 
 use common::{ChainId, Rgb};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
-use tracer_server::bsdf::Fresnel;
+use tracer_server::bsdf::{
+    BsdfDescription, ConductorDescription, DielectricDescription, Fresnel, LambertDescription,
+    PlasticDescription,
+};
 use tracer_server::chain::{Chain, Ensemble, EnsembleSettings};
 use tracer_server::film::Film;
 use tracer_server::mutation::{KINDS, StrategyOptions};
 use tracer_server::scene::load::load;
-use tracer_server::scene::{BsdfDescription, Scene, SceneDescription, Tracer};
+use tracer_server::scene::{Scene, SceneDescription, Tracer};
 
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
@@ -35,20 +38,20 @@ fn rough_cornell() -> SceneDescription {
     let fresnel = Fresnel::Dielectric { eta: 1.5, tint: Rgb::WHITE };
     for material in &mut description.materials {
         material.bsdf = match material.bsdf {
-            BsdfDescription::Lambert { reflectance } => BsdfDescription::Plastic {
-                diffuse: reflectance,
-                fresnel,
-                roughness: 0.2,
-                nonlinear: true,
-            },
-            BsdfDescription::Dielectric { eta, reflectance, transmittance } => {
-                let roughness = 0.2.into();
-                BsdfDescription::RoughDielectric { eta, reflectance, transmittance, roughness }
+            BsdfDescription::Lambert(LambertDescription { reflectance }) => {
+                let diffuse = reflectance;
+                PlasticDescription { diffuse, fresnel, roughness: 0.2, nonlinear: true }.into()
             }
-            _ => BsdfDescription::Conductor {
+            BsdfDescription::Dielectric(glass) => {
+                DielectricDescription { roughness: 0.2.into(), ..glass }.into()
+            }
+            BsdfDescription::Mirror(_)
+            | BsdfDescription::Conductor(_)
+            | BsdfDescription::Plastic(_) => ConductorDescription {
                 fresnel: Fresnel::Schlick(Rgb::grey(0.8)),
                 roughness: 0.3.into(),
-            },
+            }
+            .into(),
         };
     }
     description
@@ -74,7 +77,7 @@ fn advance(
 ) {
     for chain in chains {
         for _ in 0..steps / u64::from(CHAINS) {
-            chain.step(tracer, ensemble.mixture(), film);
+            chain.step(tracer, ensemble.kernel(), film);
         }
         chain.flush(film);
     }
@@ -88,13 +91,12 @@ fn count(scene: &Scene, strategies: &StrategyOptions) -> (usize, u64) {
         threads: 1,
         strategies: *strategies,
         bootstrap_samples: 1 << 13,
-        precision: 0.003,
     };
     let ensemble = Ensemble::new(scene, &settings, |_| ());
     let mut chains: Vec<Chain> = ensemble
         .chains()
         .zip(0..)
-        .map(|(c, id)| Chain::new(ChainId(id), 3, c.current().clone(), ensemble.mixture()))
+        .map(|(c, id)| Chain::new(ChainId(id), 3, c.current().clone(), ensemble.kernel()))
         .collect();
     assert_eq!(chains.len(), CHAINS as usize, "the scene has light");
     // Looking at every step allocates nothing either.

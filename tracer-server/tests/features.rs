@@ -24,7 +24,6 @@ fn pictures(scene: &Scene) -> [Film; 3] {
         threads: 1,
         strategies: strategies(),
         bootstrap_samples: 1 << 13,
-        precision: 0.003,
     };
     let mut ensemble = Ensemble::new(scene, &settings, |_| ());
     ensemble.advance(scene, 5000, None);

@@ -188,7 +188,7 @@ async fn a_daemon_without_file_handles_waits_and_says_so_once() {
 
 /// A render that goes on for longer than anybody waits, and is told to stop when it has an image.
 fn stopped_by(signal: &str, file: &Path, report: &Path) -> (Option<i32>, String) {
-    let size = ["--width", "16", "--height", "16", "--chains", "8"];
+    let size = ["--width", "16", "--height", "16", "--integrator", "mlt", "--chains", "8"];
     let child = program("", &["render", "cornell", "--time", "3600", "--log", "debug"])
         .args(size)
         .args([Path::new("-o"), file, Path::new("--stats-json"), report])

@@ -122,7 +122,13 @@ fn a_reference_of_another_size_is_told() {
     let file = folder.path().join("small.exr");
     let place = host::file::Place::find(&file).expect("a place");
     let written = place.write(|output| -> Result<(), host::file::FileError> {
-        host::picture::write_exr(output, [2, 2], |_, _| [1.0; 3], &[]).expect("memory");
+        host::picture::write_exr(
+            output,
+            [2, 2],
+            |_, _| [1.0; 3],
+            &host::picture::Extras::default(),
+        )
+        .expect("memory");
         output.flush().expect("room");
         Ok(())
     });

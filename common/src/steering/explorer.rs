@@ -171,7 +171,8 @@ pub enum FocusOutcome {
 }
 
 /// The factors of an acceptance probability:
-/// `a(x -> y) = min(1, (backward / forward) (mixture_current / mixture_proposed))`.
+/// `a(x -> y) = min(1, (backward / forward) (mixture_current / mixture_proposed)
+/// (target_proposed / target_current))`.
 ///
 /// A transition is a density over the light that the path carries, up to a factor that cancels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -184,6 +185,10 @@ pub struct RatioFactors {
     pub mixture_current: f64,
     /// `Z(y)`; 0 where the strategy could not make the way back.
     pub mixture_proposed: f64,
+    /// `rho(x)`, how much more often x is visited than its light alone would have it.
+    pub target_current: f64,
+    /// `rho(y)`; 0 where y is not visited at all.
+    pub target_proposed: f64,
 }
 
 /// One step of the explorer, whatever became of it.

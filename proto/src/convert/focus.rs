@@ -141,6 +141,8 @@ impl From<&FocusStep> for v1::FocusStep {
             backward: step.factors.backward,
             mixture_current: step.factors.mixture_current,
             mixture_proposed: step.factors.mixture_proposed,
+            target_current: step.factors.target_current,
+            target_proposed: step.factors.target_proposed,
             length: step.length as u32,
             kept_light: step.kept_light as u32,
             kept_eye: step.kept_eye as u32,
@@ -212,5 +214,7 @@ fn factors(wire: &v1::FocusStep) -> Result<RatioFactors, WireError> {
         backward: number("focus_step.backward", wire.backward)?,
         mixture_current: number("focus_step.mixture_current", wire.mixture_current)?,
         mixture_proposed: number("focus_step.mixture_proposed", wire.mixture_proposed)?,
+        target_current: number("focus_step.target_current", wire.target_current)?,
+        target_proposed: number("focus_step.target_proposed", wire.target_proposed)?,
     })
 }

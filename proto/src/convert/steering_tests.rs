@@ -49,6 +49,8 @@ fn step() -> FocusStep {
             backward: f64::INFINITY,
             mixture_current: 0.5,
             mixture_proposed: 0.0,
+            target_current: 0.75,
+            target_proposed: 0.125,
         },
         length: 6,
         kept_light: 2,

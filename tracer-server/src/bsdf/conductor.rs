@@ -1,9 +1,13 @@
 //! A rough metal.
 
-use common::Event;
+use common::{Event, Rgb};
 use glam::DVec3;
 
-use super::{Fresnel, Ggx, Scatter, Scattering, reflect};
+#[cfg(test)]
+use super::laws::Specimens;
+use super::mitsuba;
+use super::model::{Given, Inputs, Model, NumberInput, Parameter, Range, Value};
+use super::{Bsdf, Fresnel, Ggx, Mirror, Scatter, Scattering, reflect};
 use crate::math::{Frame, Rng};
 
 /// Reflects on both sides by microfacets that are mirrors, once: light that would meet a second
@@ -23,6 +27,8 @@ pub(super) fn facing(n: DVec3, w: DVec3) -> Frame {
 }
 
 impl Scatter for RoughConductor {
+    const NAME: &'static str = "rough conductor";
+
     fn sample(&self, n: DVec3, w: DVec3, [_, u, v]: [f64; 3]) -> Option<(DVec3, Event)> {
         let frame = facing(n, w);
         let local = frame.to_local(w);
@@ -59,7 +65,7 @@ impl Scatter for RoughConductor {
         })
     }
 
-    fn follow(&self, _: DVec3, _: DVec3, _: Event) -> Option<DVec3> {
+    fn specular_direction(&self, _: DVec3, _: DVec3, _: Event) -> Option<DVec3> {
         None
     }
 
@@ -69,5 +75,96 @@ impl Scatter for RoughConductor {
 
     fn albedo(&self) -> f64 {
         self.fresnel.at(1.0).max_channel()
+    }
+
+    fn preview_color(&self) -> Rgb {
+        self.fresnel.at(1.0)
+    }
+}
+
+/// A metal as its author describes it: a [`RoughConductor`], or a [`Mirror`] where it is smooth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConductorDescription {
+    /// What it, or a facet of it, reflects.
+    pub fresnel: Fresnel,
+    /// Roughness of the facets: alpha of GGX, in [0, 1]; 0 is a mirror.
+    pub roughness: NumberInput,
+}
+
+impl Model for ConductorDescription {
+    const NAME: &'static str = "conductor";
+    const ABOUT: &'static str = "a metal";
+    const PARAMETERS: &'static [Parameter] = &[
+        Parameter {
+            name: "specular",
+            about: "what it reflects at normal incidence, in [0, 1], and more at other angles by \
+                    Schlick's approximation; this, or eta and k",
+        },
+        Parameter { name: "eta", about: "index of refraction, a number or [r, g, b]" },
+        Parameter { name: "k", about: "extinction coefficient, a number or [r, g, b]" },
+        Parameter {
+            name: "reflectance",
+            about: "beside eta and k: tint of what is reflected, in [0, 1]; default 1",
+        },
+        Parameter {
+            name: "roughness",
+            about: "alpha of GGX in [0, 1], a number or a texture; default 0, a mirror",
+        },
+    ];
+    const PLUGINS: &'static [&'static str] = &["conductor", "roughconductor"];
+
+    fn read<G: Given>(given: &mut G) -> Result<Self, G::Error> {
+        let tint = given.color("reflectance")?;
+        let indices = (given.color("specular")?, given.color("eta")?, given.color("k")?);
+        let fresnel = match indices {
+            (Some(specular), None, None) => Fresnel::Schlick(specular),
+            (None, Some(eta), Some(k)) => {
+                Fresnel::Conductor { eta, k, tint: tint.unwrap_or(Rgb::WHITE) }
+            }
+            _ => {
+                let message = "give either specular, or eta and k, for a conductor";
+                return Err(given.error("model", message));
+            }
+        };
+        let roughness = given.number_input("roughness")?.unwrap_or(NumberInput::Constant(0.0));
+        Ok(Self { fresnel, roughness })
+    }
+
+    fn read_plugin<G: Given>(plugin: &str, given: &mut G) -> Result<Self, G::Error> {
+        let roughness = match plugin {
+            "roughconductor" => mitsuba::roughness(given)?,
+            _ => NumberInput::Constant(0.0),
+        };
+        Ok(Self { fresnel: mitsuba::metal(given)?, roughness })
+    }
+
+    fn parameters(&mut self, see: &mut dyn FnMut(&'static str, Value<'_>)) {
+        self.fresnel.parameters(see);
+        see("roughness", Value::NumberInput(&mut self.roughness, Range::ROUGHNESS));
+    }
+
+    fn build(&self, inputs: &impl Inputs) -> Bsdf {
+        let fresnel = self.fresnel;
+        if self.roughness.is_smooth() {
+            return Bsdf::Mirror(Mirror { fresnel });
+        }
+        let facets = Ggx::new(inputs.number(self.roughness));
+        Bsdf::RoughConductor(RoughConductor { fresnel, facets })
+    }
+}
+
+#[cfg(test)]
+impl Specimens for RoughConductor {
+    fn specimens() -> Vec<(&'static str, Self)> {
+        let metal = |fresnel, alpha| Self { fresnel, facets: Ggx::new(alpha) };
+        vec![
+            ("polished gold", metal(Fresnel::GOLD, 0.08)),
+            ("brushed steel", metal(Fresnel::Schlick(Rgb::new(0.56, 0.57, 0.58)), 0.35)),
+            ("matt silver", metal(Fresnel::Constant(Rgb::WHITE), 1.0)),
+        ]
+    }
+
+    fn samplers(_: Event) -> u32 {
+        1
     }
 }

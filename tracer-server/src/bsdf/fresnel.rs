@@ -2,6 +2,8 @@
 
 use common::Rgb;
 
+use super::model::{Range, Value};
+
 /// Reflectance of a smooth boundary as a function of the angle of incidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fresnel {
@@ -42,6 +44,23 @@ impl Fresnel {
                 Rgb::new(channel(eta.r, k.r), channel(eta.g, k.g), channel(eta.b, k.b)) * tint
             }
             Self::Dielectric { eta, tint } => tint * dielectric(cos_i, eta),
+        }
+    }
+
+    /// Shows its numbers under the names that the project's own scene files have for them.
+    pub(super) fn parameters(&mut self, see: &mut dyn FnMut(&'static str, Value<'_>)) {
+        match self {
+            Self::Constant(color) => see("reflectance", Value::Share(color)),
+            Self::Schlick(normal) => see("specular", Value::Share(normal)),
+            Self::Conductor { eta, k, tint } => {
+                see("eta", Value::Indices(eta));
+                see("k", Value::Indices(k));
+                see("reflectance", Value::Share(tint));
+            }
+            Self::Dielectric { eta, tint } => {
+                see("eta", Value::Number(eta, Range::INDEX));
+                see("specular", Value::Share(tint));
+            }
         }
     }
 
@@ -89,6 +108,16 @@ fn conductor(cos_i: f64, eta: f64, k: f64) -> f64 {
     let parallel = perpendicular * (along - skew) / (along + skew);
     let reflectance = 0.5 * (parallel + perpendicular);
     if reflectance.is_finite() { reflectance.clamp(0.0, 1.0) } else { 1.0 }
+}
+
+#[cfg(test)]
+impl Fresnel {
+    pub(super) const GOLD: Self = Self::Conductor {
+        eta: Rgb::new(0.18, 0.42, 1.37),
+        k: Rgb::new(3.42, 2.35, 1.77),
+        tint: Rgb::WHITE,
+    };
+    pub(super) const COAT: Self = Self::Dielectric { eta: 1.5, tint: Rgb::WHITE };
 }
 
 #[cfg(test)]

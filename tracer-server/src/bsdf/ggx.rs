@@ -19,7 +19,7 @@ pub struct Ggx {
 
 /// Surfaces of less roughness are smooth: their models become Dirac ones. Highlights are then
 /// narrower than a tenth of a degree, and their density exceeds 3e5 per steradian.
-pub const SMOOTH: f64 = 1e-3;
+pub(super) const SMOOTH: f64 = 1e-3;
 
 impl Ggx {
     /// Of the roughness `alpha`, the slope of the microfacets' root mean square; brought into

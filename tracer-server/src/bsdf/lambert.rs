@@ -5,7 +5,11 @@ use std::f64::consts::FRAC_1_PI;
 use common::{Event, Rgb};
 use glam::DVec3;
 
-use super::{Scatter, Scattering};
+#[cfg(test)]
+use super::laws::Specimens;
+use super::mitsuba;
+use super::model::{ColorInput, Given, Inputs, Model, Parameter, Value};
+use super::{Bsdf, Scatter, Scattering};
 use crate::math::{Frame, Rng, cosine_hemisphere, invert_cosine_hemisphere};
 
 /// Reflects the same radiance in all directions: `f = reflectance / pi`.
@@ -16,6 +20,8 @@ pub struct Lambert {
 }
 
 impl Scatter for Lambert {
+    const NAME: &'static str = "lambert";
+
     #[inline]
     fn sample(&self, n: DVec3, w: DVec3, [_, u, v]: [f64; 3]) -> Option<(DVec3, Event)> {
         if self.reflectance.is_black() {
@@ -47,7 +53,7 @@ impl Scatter for Lambert {
         })
     }
 
-    fn follow(&self, _: DVec3, _: DVec3, _: Event) -> Option<DVec3> {
+    fn specular_direction(&self, _: DVec3, _: DVec3, _: Event) -> Option<DVec3> {
         None
     }
 
@@ -58,5 +64,61 @@ impl Scatter for Lambert {
 
     fn albedo(&self) -> f64 {
         self.reflectance.max_channel()
+    }
+
+    fn preview_color(&self) -> Rgb {
+        self.reflectance
+    }
+}
+
+/// A [`Lambert`] surface as its author describes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LambertDescription {
+    /// Albedo, each channel in [0, 1].
+    pub reflectance: ColorInput,
+}
+
+impl Model for LambertDescription {
+    const NAME: &'static str = "lambert";
+    const ABOUT: &'static str = "ideal diffuse reflection";
+    const PARAMETERS: &'static [Parameter] = &[Parameter {
+        name: "reflectance",
+        about: "share of light reflected, in [0, 1]: a number, [r, g, b] or a texture; needed",
+    }];
+    const PLUGINS: &'static [&'static str] = &["diffuse", "roughdiffuse"];
+
+    fn read<G: Given>(given: &mut G) -> Result<Self, G::Error> {
+        Ok(Self { reflectance: given.needed_color_input("reflectance")? })
+    }
+
+    fn read_plugin<G: Given>(_: &str, given: &mut G) -> Result<Self, G::Error> {
+        let reflectance = given.color_input("reflectance")?.unwrap_or(mitsuba::REFLECTANCE);
+        Ok(Self { reflectance })
+    }
+
+    fn parameters(&mut self, see: &mut dyn FnMut(&'static str, Value<'_>)) {
+        see("reflectance", Value::ShareInput(&mut self.reflectance));
+    }
+
+    fn build(&self, inputs: &impl Inputs) -> Bsdf {
+        Bsdf::Lambert(Lambert { reflectance: inputs.color(self.reflectance) })
+    }
+}
+
+#[cfg(test)]
+impl Specimens for Lambert {
+    fn specimens() -> Vec<(&'static str, Self)> {
+        vec![
+            ("lambert", Self { reflectance: Rgb::new(0.9, 0.5, 0.1) }),
+            ("white lambert", Self { reflectance: Rgb::WHITE }),
+        ]
+    }
+
+    fn samplers(_: Event) -> u32 {
+        1
+    }
+
+    fn scatters(&self, _: f64) -> Option<Rgb> {
+        Some(self.reflectance)
     }
 }

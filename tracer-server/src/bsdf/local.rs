@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use common::Event;
 use glam::DVec3;
 
-use super::{Bsdf, Scatter as _, Scattering};
+use super::{Bsdf, Scattering};
 use crate::math::Rng;
 
 /// A scattering model at a point of a surface.
@@ -104,10 +104,10 @@ impl<'a> Local<'a> {
         })
     }
 
-    /// As [`super::Scatter::follow`].
+    /// As [`super::Scatter::specular_direction`].
     #[inline]
-    pub fn follow(&self, w: DVec3, event: Event) -> Option<DVec3> {
-        let onward = self.bsdf.follow(self.shading, w, event);
+    pub fn specular_direction(&self, w: DVec3, event: Event) -> Option<DVec3> {
+        let onward = self.bsdf.specular_direction(self.shading, w, event);
         if self.plain {
             return onward;
         }

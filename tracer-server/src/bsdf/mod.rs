@@ -1,7 +1,8 @@
 //! How light scatters at a point of a surface. Local: knows no scene and no path.
 //!
-//! To add a model: write its file with an `impl Scatter`, add a variant to [`Bsdf`] and one arm to
-//! `model!`; the laws in `laws.rs` then hold it to account.
+//! To add a model: write its file with an `impl Scatter` of what scatters and an `impl Model` of what
+//! its author writes, declare the module, and add a line to the list in `models!` below: scene files,
+//! checks, tables and the laws in `laws.rs` follow from it. `docs/EXTEND.md` walks through it.
 
 mod conductor;
 mod dielectric;
@@ -10,27 +11,28 @@ mod ggx;
 mod lambert;
 mod local;
 mod mirror;
+pub(crate) mod mitsuba;
+mod model;
 mod plastic;
-mod rough_dielectric;
-mod rough_plastic;
 
 #[cfg(test)]
 mod laws;
+#[cfg(test)]
+mod model_laws;
 
 use common::{Event, Rgb};
 use glam::DVec3;
 
 use crate::math::Rng;
-pub use conductor::RoughConductor;
-pub use dielectric::Dielectric;
+pub use conductor::{ConductorDescription, RoughConductor};
+pub use dielectric::{Dielectric, DielectricDescription, RoughDielectric};
 pub use fresnel::Fresnel;
-pub use ggx::{Ggx, SMOOTH};
-pub use lambert::Lambert;
+pub use ggx::Ggx;
+pub use lambert::{Lambert, LambertDescription};
 pub use local::Local;
-pub use mirror::Mirror;
-pub use plastic::{Plastic, deepened};
-pub use rough_dielectric::RoughDielectric;
-pub use rough_plastic::RoughPlastic;
+pub use mirror::{Mirror, MirrorDescription};
+pub use model::{ColorInput, Given, Inputs, Model, Named, NumberInput, Parameter, Range, Value};
+pub use plastic::{Plastic, PlasticDescription, RoughPlastic};
 
 /// Everything a path needs of one scattering vertex, given both neighbours and the event.
 ///
@@ -63,6 +65,13 @@ pub struct Scattering {
 /// What a scattering model must provide. All directions are unit vectors that point away from the
 /// surface; `n` is the unit normal on the front side.
 pub trait Scatter {
+    /// A word or two for tables.
+    const NAME: &'static str;
+    /// True when some of its events are Dirac ones.
+    const HAS_DIRAC_LOBE: bool = false;
+    /// True when light passes through it.
+    const IS_TRANSPARENT: bool = false;
+
     /// Makes of uniform numbers an event (of the first) and the direction the walk goes on (of the
     /// other two), given the direction `w` it came from. `None` when the walk is absorbed.
     fn sample(&self, n: DVec3, w: DVec3, u: [f64; 3]) -> Option<(DVec3, Event)>;
@@ -78,132 +87,236 @@ pub trait Scatter {
 
     /// The only direction in which the Dirac `event` continues from `w`; `None` when it cannot
     /// happen there (total internal reflection, or no such lobe).
-    fn follow(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3>;
+    fn specular_direction(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3>;
 
     /// The event with which a vertex can be joined to any other by an explicit connection.
     fn connectable(&self) -> Option<Event>;
 
     /// About how much of the light is scattered, at most 1: for Russian roulette.
     fn albedo(&self) -> f64;
-}
-
-/// A scattering model with its parameters.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Bsdf {
-    /// Ideal diffuse.
-    Lambert(Lambert),
-    /// Ideal mirror.
-    Mirror(Mirror),
-    /// Smooth boundary of transparent media.
-    Dielectric(Dielectric),
-    /// Rough metal.
-    RoughConductor(RoughConductor),
-    /// Rough boundary of transparent media.
-    RoughDielectric(RoughDielectric),
-    /// Diffuse under a smooth coat.
-    Plastic(Plastic),
-    /// Diffuse under a rough coat.
-    RoughPlastic(RoughPlastic),
-}
-
-impl Bsdf {
-    /// True when some of its events are Dirac ones.
-    pub fn has_dirac_lobe(&self) -> bool {
-        matches!(self, Self::Mirror(_) | Self::Dielectric(_) | Self::Plastic(_))
-    }
-
-    /// The model with another colour of its diffuse part, or with other facets: what a texture
-    /// tells at a point.
-    #[must_use]
-    pub fn painted(&self, color: Option<Rgb>, facets: Option<Ggx>) -> Self {
-        let mut painted = *self;
-        match (&mut painted, color, facets) {
-            (Self::Lambert(m), Some(color), _) => m.reflectance = color,
-            (Self::Plastic(m), Some(color), _) => m.diffuse = color,
-            (Self::RoughPlastic(m), Some(color), _) => m.diffuse = color,
-            (Self::RoughConductor(m), _, Some(facets)) => m.facets = facets,
-            (Self::RoughDielectric(m), _, Some(facets)) => m.facets = facets,
-            _ => {}
-        }
-        painted
-    }
-
-    /// A word or two for tables.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Lambert(_) => "lambert",
-            Self::Mirror(_) => "mirror",
-            Self::Dielectric(_) => "dielectric",
-            Self::RoughConductor(_) => "rough conductor",
-            Self::RoughDielectric(_) => "rough dielectric",
-            Self::Plastic(_) => "plastic",
-            Self::RoughPlastic(_) => "rough plastic",
-        }
-    }
 
     /// The colour by which people would know it.
-    pub fn preview_color(&self) -> Rgb {
-        match self {
-            Self::Lambert(m) => m.reflectance,
-            Self::Mirror(m) => m.fresnel.at(1.0),
-            Self::Dielectric(m) => m.transmittance,
-            Self::RoughConductor(m) => m.fresnel.at(1.0),
-            Self::RoughDielectric(m) => m.facet.transmittance,
-            Self::Plastic(m) => m.diffuse,
-            Self::RoughPlastic(m) => m.diffuse,
-        }
-    }
-
-    /// True when light passes through it.
-    pub fn is_transparent(&self) -> bool {
-        matches!(self, Self::Dielectric(_) | Self::RoughDielectric(_))
-    }
+    fn preview_color(&self) -> Rgb;
 }
 
-/// Calls a method of the model behind the variant: the only match on [`Bsdf`].
-macro_rules! model {
-    ($bsdf:expr, $model:ident => $call:expr) => {
-        match $bsdf {
-            Bsdf::Lambert($model) => $call,
-            Bsdf::Mirror($model) => $call,
-            Bsdf::Dielectric($model) => $call,
-            Bsdf::RoughConductor($model) => $call,
-            Bsdf::RoughDielectric($model) => $call,
-            Bsdf::Plastic($model) => $call,
-            Bsdf::RoughPlastic($model) => $call,
+/// One entry of the table of models.
+#[derive(Clone, Copy, Debug)]
+pub struct ModelKind {
+    /// The name in the project's own scene files.
+    pub name: &'static str,
+    /// What it is, for people.
+    pub about: &'static str,
+    /// What the project's own scene files may say of it.
+    pub parameters: &'static [Parameter],
+    /// What Mitsuba calls it, and models that come near it.
+    pub plugins: &'static [&'static str],
+}
+
+/// Makes of one list the enum of what authors describe, the enum of what scatters, the table of their
+/// kinds, and every `match` on them.
+macro_rules! models {
+    ($(
+        $(#[$doc:meta])*
+        $model:ident($description:ty) => $($form:ident($scatter:ty)),+;
+    )*) => {
+        /// A scattering model as its author describes it.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum BsdfDescription {
+            $($(#[$doc])* $model($description),)*
+        }
+
+        /// A scattering model that is built, with its parameters.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Bsdf {
+            $($(
+                #[doc = concat!("See [`", stringify!($scatter), "`].")]
+                $form($scatter),
+            )+)*
+        }
+
+        /// All models that an author may ask for.
+        pub const MODELS: &[ModelKind] = &[$(ModelKind {
+            name: <$description as Model>::NAME,
+            about: <$description as Model>::ABOUT,
+            parameters: <$description as Model>::PARAMETERS,
+            plugins: <$description as Model>::PLUGINS,
+        }),*];
+
+        $(impl From<$description> for BsdfDescription {
+            fn from(description: $description) -> Self {
+                Self::$model(description)
+            }
+        })*
+
+        impl BsdfDescription {
+            /// Reads the model of that name in the project's own scene files; `None` where there is
+            /// none.
+            pub fn read<G: Given>(name: &str, given: &mut G) -> Option<Result<Self, G::Error>> {
+                $(if name == <$description as Model>::NAME {
+                    return Some(<$description as Model>::read(given).map(Self::$model));
+                })*
+                None
+            }
+
+            /// Reads what Mitsuba calls by that name; `None` where there is no such model.
+            pub fn read_plugin<G: Given>(
+                plugin: &str,
+                given: &mut G,
+            ) -> Option<Result<Self, G::Error>> {
+                $(if <$description as Model>::PLUGINS.contains(&plugin) {
+                    let read = <$description as Model>::read_plugin(plugin, given);
+                    return Some(read.map(Self::$model));
+                })*
+                None
+            }
+
+            /// The name in the project's own scene files.
+            pub fn name(&self) -> &'static str {
+                match self {
+                    $(Self::$model(_) => <$description as Model>::NAME,)*
+                }
+            }
+
+            /// Shows every parameter under its name.
+            pub fn parameters(&mut self, see: &mut dyn FnMut(&'static str, Value<'_>)) {
+                match self {
+                    $(Self::$model(model) => model.parameters(see),)*
+                }
+            }
+
+            /// As [`Model::build`].
+            pub fn build(&self, inputs: &impl Inputs) -> Bsdf {
+                match self {
+                    $(Self::$model(model) => model.build(inputs),)*
+                }
+            }
+
+            /// As [`Model::rebuild`].
+            pub fn rebuild(&self, built: &Bsdf, inputs: &impl Inputs) -> Bsdf {
+                match self {
+                    $(Self::$model(model) => model.rebuild(built, inputs),)*
+                }
+            }
+
+            /// As [`Model::inside_out`].
+            pub fn inside_out(&self) -> Option<Self> {
+                match self {
+                    $(Self::$model(model) => model.inside_out().map(Self::$model),)*
+                }
+            }
+        }
+
+        impl Bsdf {
+            /// A word or two for tables.
+            pub fn name(&self) -> &'static str {
+                match self {
+                    $($(Self::$form(_) => <$scatter as Scatter>::NAME,)+)*
+                }
+            }
+
+            /// True when some of its events are Dirac ones.
+            pub fn has_dirac_lobe(&self) -> bool {
+                match self {
+                    $($(Self::$form(_) => <$scatter as Scatter>::HAS_DIRAC_LOBE,)+)*
+                }
+            }
+
+            /// True when light passes through it.
+            pub fn is_transparent(&self) -> bool {
+                match self {
+                    $($(Self::$form(_) => <$scatter as Scatter>::IS_TRANSPARENT,)+)*
+                }
+            }
+
+            /// As [`Scatter::sample`].
+            #[inline]
+            pub fn sample(&self, n: DVec3, w: DVec3, u: [f64; 3]) -> Option<(DVec3, Event)> {
+                match self {
+                    $($(Self::$form(model) => model.sample(n, w, u),)+)*
+                }
+            }
+
+            /// As [`Scatter::invert`].
+            pub fn invert(
+                &self,
+                n: DVec3,
+                w: DVec3,
+                w_out: DVec3,
+                event: Event,
+                rng: &mut Rng,
+            ) -> [f64; 3] {
+                match self {
+                    $($(Self::$form(model) => model.invert(n, w, w_out, event, rng),)+)*
+                }
+            }
+
+            /// As [`Scatter::evaluate`].
+            #[inline]
+            pub fn evaluate(
+                &self,
+                n: DVec3,
+                w_l: DVec3,
+                w_e: DVec3,
+                event: Event,
+            ) -> Option<Scattering> {
+                match self {
+                    $($(Self::$form(model) => model.evaluate(n, w_l, w_e, event),)+)*
+                }
+            }
+
+            /// As [`Scatter::specular_direction`].
+            #[inline]
+            pub fn specular_direction(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
+                match self {
+                    $($(Self::$form(model) => model.specular_direction(n, w, event),)+)*
+                }
+            }
+
+            /// As [`Scatter::connectable`].
+            #[inline]
+            pub fn connectable(&self) -> Option<Event> {
+                match self {
+                    $($(Self::$form(model) => model.connectable(),)+)*
+                }
+            }
+
+            /// As [`Scatter::albedo`].
+            #[inline]
+            pub fn albedo(&self) -> f64 {
+                match self {
+                    $($(Self::$form(model) => model.albedo(),)+)*
+                }
+            }
+
+            /// The colour by which people would know it.
+            pub fn preview_color(&self) -> Rgb {
+                match self {
+                    $($(Self::$form(model) => model.preview_color(),)+)*
+                }
+            }
+        }
+
+        /// Every model that scatters, put to the laws with parameters that matter.
+        #[cfg(test)]
+        fn specimens() -> Vec<laws::Specimen> {
+            let mut all = Vec::new();
+            $($(all.extend(laws::specimens_of(Bsdf::$form));)+)*
+            all
         }
     };
 }
 
-impl Scatter for Bsdf {
-    #[inline]
-    fn sample(&self, n: DVec3, w: DVec3, u: [f64; 3]) -> Option<(DVec3, Event)> {
-        model!(self, m => m.sample(n, w, u))
-    }
-
-    fn invert(&self, n: DVec3, w: DVec3, w_out: DVec3, event: Event, rng: &mut Rng) -> [f64; 3] {
-        model!(self, m => m.invert(n, w, w_out, event, rng))
-    }
-
-    #[inline]
-    fn evaluate(&self, n: DVec3, w_l: DVec3, w_e: DVec3, event: Event) -> Option<Scattering> {
-        model!(self, m => m.evaluate(n, w_l, w_e, event))
-    }
-
-    #[inline]
-    fn follow(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
-        model!(self, m => m.follow(n, w, event))
-    }
-
-    #[inline]
-    fn connectable(&self) -> Option<Event> {
-        model!(self, m => m.connectable())
-    }
-
-    #[inline]
-    fn albedo(&self) -> f64 {
-        model!(self, m => m.albedo())
-    }
+models! {
+    /// Ideal diffuse reflection.
+    Lambert(LambertDescription) => Lambert(Lambert);
+    /// An ideal mirror.
+    Mirror(MirrorDescription) => Mirror(Mirror);
+    /// A boundary between two transparent media.
+    Dielectric(DielectricDescription) => Dielectric(Dielectric), RoughDielectric(RoughDielectric);
+    /// A metal.
+    Conductor(ConductorDescription) => RoughConductor(RoughConductor);
+    /// Diffuse paint under a transparent coat.
+    Plastic(PlasticDescription) => Plastic(Plastic), RoughPlastic(RoughPlastic);
 }
 
 /// Mirror image of `w` in the plane with normal `n`.

@@ -6,17 +6,16 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use common::{ChainId, PathId};
 use thiserror::Error;
 
-use super::{Chain, Checkpoint, LongestStay};
+use super::{Chain, Checkpoint, Kernel, LongestStay};
 use crate::film::Film;
-use crate::mutation::Mixture;
 use crate::path::Path;
 use crate::scene::Tracer;
 
 /// The chains as they were when a window on them was opened.
 #[derive(Debug)]
 pub struct Round {
-    /// The strategies of that time.
-    pub mixture: Arc<Mixture>,
+    /// The strategies and the target of that time.
+    pub kernel: Arc<Kernel>,
     /// Mean luminance of the image, in the file's units.
     pub normalization: f64,
     /// Steps that were shown of every chain.
@@ -65,13 +64,13 @@ struct Shelf {
 impl Round {
     /// A round of chains that are shown for `window` steps from these `checkpoints` on.
     pub fn new(
-        mixture: Arc<Mixture>,
+        kernel: Arc<Kernel>,
         normalization: f64,
         window: u64,
         mut checkpoints: Vec<Checkpoint>,
     ) -> Self {
         checkpoints.sort_by_key(|checkpoint| checkpoint.id().chain);
-        Self { mixture, normalization, window, checkpoints }
+        Self { kernel, normalization, window, checkpoints }
     }
 
     fn of(&self, chain: ChainId) -> Option<&Checkpoint> {
@@ -86,11 +85,11 @@ impl Round {
     /// The path of that name, where the chain had it in this round. The steps are splatted on `film`.
     fn replay(&self, scene: &Tracer<'_>, id: PathId, film: &mut Film) -> Option<Path> {
         let checkpoint = self.of(id.chain)?;
-        let mut chain = Chain::resume(scene, checkpoint, &self.mixture).ok()?;
+        let mut chain = Chain::resume(scene, checkpoint, &self.kernel).ok()?;
         let (epoch, steps) = checkpoint.time();
         if id.step > steps && epoch == id.epoch {
             for _ in 0..(id.step - steps).min(self.window) {
-                chain.step(scene, &self.mixture, film);
+                chain.step(scene, &self.kernel, film);
             }
         }
         (chain.header().id == id).then(|| chain.current().clone())

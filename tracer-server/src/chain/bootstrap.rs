@@ -1,107 +1,56 @@
-//! The pool of bidirectional samples that gives both the normalisation and the chains' seeds.
+//! Pools of bidirectional samples, which give both a normalisation and the chains' seeds.
 
-use super::{EnsembleSettings, Pool};
+use super::Pool;
 use crate::math::{Rng, Stream};
-use crate::parallel::Stop;
-use crate::path::{Aim, BidirectionalSampler, Path};
+use crate::parallel::{self, Stop};
+use crate::path::{BidirectionalSampler, CameraSample, Path};
 use crate::scene::{Scene, Tracer};
+use crate::target::Target;
 
-/// How large the pool may become.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BootstrapSettings {
+/// Samples that one worker draws in one go.
+const CHUNK: u64 = 2048;
+
+/// Which pool: pools of different keys share no random number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PoolKey {
     /// Number of the run; the same number gives the same pool.
     pub seed: u64,
-    /// Worker threads; the pool does not depend on it.
-    pub threads: usize,
-    /// Samples drawn before anything is judged.
-    pub min_samples: u64,
-    /// Samples drawn at most.
-    pub max_samples: u64,
-    /// Relative standard error of the normalisation that is good enough.
-    pub relative_error: f64,
-    /// Seeds that will be asked for.
-    pub chains: u32,
+    /// Number of the pool in the run.
+    pub number: u64,
 }
 
-impl From<&EnsembleSettings> for BootstrapSettings {
-    fn from(settings: &EnsembleSettings) -> Self {
-        Self {
-            seed: settings.seed,
-            threads: settings.threads,
-            min_samples: (settings.bootstrap_samples / 8).max(1),
-            max_samples: settings.bootstrap_samples,
-            relative_error: settings.precision,
-            chains: settings.chains,
-        }
-    }
-}
-
-/// The pool, reduced to what is needed of it.
-#[derive(Clone, Debug)]
-pub struct Bootstrap {
-    seed: u64,
-    pool: Pool,
-}
-
-impl Bootstrap {
-    /// Draws samples until the normalisation is good enough and the seeds are diverse, or until
-    /// the budget is spent; where it is told to `stop`, there are no seeds. `on_progress` hears the
-    /// number of samples drawn.
-    pub fn new(
-        scene: &Scene,
-        settings: &BootstrapSettings,
-        stop: &Stop,
-        on_progress: impl FnMut(u64),
-    ) -> Self {
-        let seed = settings.seed;
-        let start = || Replay::new(scene, seed);
-        let pool = Pool::new(settings, start, Replay::weight, stop, on_progress);
-        Self { seed, pool }
-    }
-
-    /// `b`: the mean luminance of the image, in film units of the scene.
-    pub fn normalization(&self) -> f64 {
-        self.pool.normalization()
-    }
-
-    /// Standard error of `b`.
-    pub fn normalization_error(&self) -> f64 {
-        self.pool.normalization_error()
-    }
-
-    /// Number of samples.
-    pub fn sample_count(&self) -> u64 {
-        self.pool.sample_count()
-    }
-
-    /// `count` seeds by systematic resampling of the pool, and among the paths of each sample.
-    /// Empty when no sample carries light.
-    pub fn seeds(&self, scene: &Scene, count: u32) -> Vec<Path> {
-        let mut rng = Rng::new(self.seed, Stream::Resampling, 0);
-        let mut replay = Replay::new(scene, self.seed);
-        let samples = self.pool.resample(count, &mut rng);
-        samples.into_iter().map(|(n, weight)| replay.pick(n, weight, rng.uniform())).collect()
-    }
-}
-
-/// Rebuilds samples of the pool from their keys.
-struct Replay<'s> {
-    scene: Tracer<'s>,
-    seed: u64,
+/// Draws the samples of a pool, and draws them again.
+///
+/// The samples are bidirectional ones over all splits, whatever base sampler there is: seeds of a path
+/// tracer would never be what path tracing cannot find.
+#[derive(Debug)]
+pub struct Source<'a, 's> {
+    scene: &'a Tracer<'s>,
+    key: PoolKey,
+    target: &'a Target,
     sampler: BidirectionalSampler,
 }
 
-impl<'s> Replay<'s> {
-    fn new(scene: &'s Scene, seed: u64) -> Self {
-        let scene = Tracer::new(scene);
-        let sampler = BidirectionalSampler::new(&scene);
-        Self { scene, seed, sampler }
+impl<'a, 's> Source<'a, 's> {
+    /// The source of seeds for chains that visit `target`.
+    pub fn new(scene: &'a Tracer<'s>, key: PoolKey, target: &'a Target) -> Self {
+        Self { scene, key, target, sampler: BidirectionalSampler::new(scene) }
     }
 
-    fn sample(&mut self, number: u64, visit: impl FnMut(&Path, f64)) {
-        let mut rng = Rng::new(self.seed, Stream::Bootstrap, number);
-        let aim = Aim::from_numbers(&self.scene, &mut rng);
-        self.sampler.sample(&self.scene, aim, &mut rng, visit);
+    /// Draws the first `count` samples.
+    pub fn pool(&mut self, count: u64) -> Pool {
+        Pool::of((0..count).map(|number| self.weight(number)).collect())
+    }
+
+    /// Numbered samples are spread over keys far apart, so that no pool meets another.
+    fn sample(&mut self, number: u64, mut visit: impl FnMut(&Path, f64)) {
+        let index = self.key.number << 32 | number;
+        let mut rng = Rng::new(self.key.seed, Stream::Bootstrap, index);
+        let aim = CameraSample::from_numbers(self.scene, &mut rng);
+        let target = self.target;
+        self.sampler.sample(self.scene, aim, &mut rng, |path, weight| {
+            visit(path, weight * target.importance(path).rho);
+        });
     }
 
     fn weight(&mut self, number: u64) -> f64 {
@@ -116,12 +65,65 @@ impl<'s> Replay<'s> {
         let mut chosen = None;
         self.sample(number, |path, weight| {
             sum += weight;
-            if rest >= 0.0 {
+            if rest >= 0.0 && weight > 0.0 {
                 chosen = Some(path.clone());
                 rest -= weight;
             }
         });
         debug_assert_eq!(sum.to_bits(), expected.to_bits(), "a sample was not rebuilt exactly");
         chosen.unwrap_or_default()
+    }
+
+    /// `count` seeds by systematic resampling of the pool, and among the paths of each sample.
+    /// Empty when no sample has any weight.
+    pub fn seeds(&mut self, pool: &Pool, count: u32) -> Vec<Path> {
+        let mut rng = Rng::new(self.key.seed, Stream::Resampling, self.key.number);
+        let samples = pool.resample(count, &mut rng);
+        samples.into_iter().map(|(n, weight)| self.pick(n, weight, rng.uniform())).collect()
+    }
+}
+
+/// Draws a pool on many threads; one that is told to `stop` is empty. `on_progress` hears the number of samples drawn.
+pub fn draw_pool(
+    scene: &Scene,
+    (key, target): (PoolKey, &Target),
+    (samples, threads): (u64, usize),
+    stop: &Stop,
+    on_progress: impl FnMut(u64),
+) -> Pool {
+    let start = || Tracer::new(scene);
+    let draw = |tracer: &mut Tracer<'_>, numbers: std::ops::Range<u64>| {
+        let mut source = Source::new(tracer, key, target);
+        numbers.map(|number| source.weight(number)).collect()
+    };
+    Pool::gather((samples, threads), start, draw, stop, on_progress)
+}
+
+impl Pool {
+    /// Gathers `samples` weights in chunks, which `draw` gives by their numbers; none when told to `stop`.
+    pub fn gather<S: Send>(
+        (samples, threads): (u64, usize),
+        start: impl Fn() -> S + Sync,
+        draw: impl Fn(&mut S, std::ops::Range<u64>) -> Vec<f64> + Sync,
+        stop: &Stop,
+        mut on_progress: impl FnMut(u64),
+    ) -> Self {
+        /// Chunks between two reports.
+        const REPORT: u64 = 8;
+        let chunks = samples.div_ceil(CHUNK);
+        let mut weights = Vec::new();
+        for first in (0..chunks).step_by(REPORT as usize) {
+            let numbers = first..(first + REPORT).min(chunks);
+            let drawn = parallel::map(threads, numbers, &start, |state, chunk| {
+                let numbers = chunk * CHUNK..((chunk + 1) * CHUNK).min(samples);
+                if stop.is_set() { Vec::new() } else { draw(state, numbers) }
+            });
+            if stop.is_set() {
+                return Self::of(Vec::new());
+            }
+            weights.extend(drawn.into_iter().flatten());
+            on_progress(weights.len() as u64);
+        }
+        Self::of(weights)
     }
 }

@@ -3,9 +3,8 @@
 use common::{ChainId, PathId, StrategyId};
 use glam::DVec2;
 
-use super::Chain;
+use super::{Chain, Kernel};
 use crate::math::Rng;
-use crate::mutation::Mixture;
 use crate::path::{Failure, Path, Vertex};
 use crate::scene::Tracer;
 
@@ -55,15 +54,15 @@ impl Chain {
         }
     }
 
-    /// The chain that goes on from `checkpoint` as the first one did, given the same `mixture`. Its
+    /// The chain that goes on from `checkpoint` as the first one did, given the same `kernel`. Its
     /// counts begin anew.
     pub fn resume(
         scene: &Tracer<'_>,
         checkpoint: &Checkpoint,
-        mixture: &Mixture,
+        kernel: &Kernel,
     ) -> Result<Self, Failure> {
         let path = Path::rebuild(scene, &checkpoint.vertices, checkpoint.film)?;
-        let mut chain = Self::with_stream(checkpoint.chain, checkpoint.rng.clone(), path, mixture);
+        let mut chain = Self::with_stream(checkpoint.chain, checkpoint.rng.clone(), path, kernel);
         chain.epoch = checkpoint.epoch;
         chain.steps = checkpoint.steps;
         chain.arrival = checkpoint.arrival;

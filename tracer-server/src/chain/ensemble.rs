@@ -8,12 +8,14 @@ use common::{ChainId, Diagnostics, PathBatch};
 use super::diagnose::{diagnose, longest};
 use super::monitor::LongestStay;
 use super::{
-    Bootstrap, Chain, ChainStatistics, Checkpoint, PilotSettings, Prospect, Watch, explore,
+    Chain, ChainStatistics, Checkpoint, Kernel, PilotSettings, Pool, PoolKey, Prospect, Source,
+    Survey, Watch, draw_pool, survey,
 };
 use crate::film::Film;
 use crate::mutation::{Mixture, StrategyOptions};
 use crate::parallel::{self, Stop};
 use crate::scene::{RayCounts, Scene, Tracer};
+use crate::target::Target;
 
 /// Films that chains are spread over.
 ///
@@ -22,8 +24,8 @@ use crate::scene::{RayCounts, Scene, Tracer};
 /// more threads than this have work.
 pub const LANES: usize = 8;
 
-/// The pilot has one sample for each so many of the largest pool.
-const PILOT_SHARE: u64 = 32;
+/// The pilot has one sample for each so many of the pool.
+const PILOT_SHARE: u64 = 16;
 
 /// How chains are run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,10 +38,8 @@ pub struct EnsembleSettings {
     pub threads: usize,
     /// What the user wants of the strategies.
     pub strategies: StrategyOptions,
-    /// Samples drawn at most for the normalisation and the seeds.
+    /// Samples drawn for the normalisation and the seeds.
     pub bootstrap_samples: u64,
-    /// Relative standard error of the normalisation that is good enough.
-    pub precision: f64,
 }
 
 impl Default for EnsembleSettings {
@@ -49,8 +49,7 @@ impl Default for EnsembleSettings {
             chains: 128,
             threads: thread::available_parallelism().map_or(1, Into::into),
             strategies: StrategyOptions::default(),
-            bootstrap_samples: 1 << 19,
-            precision: 0.003,
+            bootstrap_samples: 1 << 16,
         }
     }
 }
@@ -58,9 +57,9 @@ impl Default for EnsembleSettings {
 /// Chains with their common film.
 #[derive(Debug)]
 pub struct Ensemble {
-    mixture: Arc<Mixture>,
+    kernel: Arc<Kernel>,
     prospects: Vec<Prospect>,
-    bootstrap: Bootstrap,
+    pool: Pool,
     lanes: Vec<Lane>,
     threads: usize,
     stop: Stop,
@@ -91,15 +90,18 @@ impl Ensemble {
         settings: &EnsembleSettings,
         on_progress: impl FnMut(u64),
     ) -> Self {
-        let bootstrap = Bootstrap::new(scene, &settings.into(), stop, on_progress);
+        let key = PoolKey { seed: settings.seed, number: 0 };
+        let (samples, threads) = (settings.bootstrap_samples, settings.threads.max(1));
+        let wanted = (key, &Target::Whole);
+        let pool = draw_pool(scene, wanted, (samples, threads), stop, on_progress);
         let camera = scene.camera();
         let pilot = PilotSettings {
             seed: settings.seed,
             threads: settings.threads,
-            samples: settings.bootstrap_samples.div_ceil(PILOT_SHARE),
+            samples: samples.div_ceil(PILOT_SHARE),
             stop: stop.clone(),
         };
-        let (mixture, prospects) = explore(scene, &settings.strategies, &pilot);
+        let Survey { mixture, prospects, .. } = survey(scene, &settings.strategies, &pilot);
         let mut lanes: Vec<Lane> = (0..LANES)
             .map(|_| Lane {
                 film: Film::new(camera.width, camera.height),
@@ -109,43 +111,48 @@ impl Ensemble {
                 checkpoints: Vec::new(),
             })
             .collect();
-        let seeds = bootstrap.seeds(scene, settings.chains);
+        let kernel = Arc::new(Kernel::whole(mixture));
+        let tracer = Tracer::new(scene);
+        let seeds = Source::new(&tracer, key, &Target::Whole).seeds(&pool, settings.chains);
         for (id, seed) in (0_u32..).zip(seeds) {
-            let chain = Chain::new(ChainId(id), settings.seed, seed, &mixture);
+            let chain = Chain::new(ChainId(id), settings.seed, seed, &kernel);
             lanes[id as usize % LANES].chains.push(chain);
         }
-        let threads = settings.threads.max(1);
-        let mixture = Arc::new(mixture);
-        Self { mixture, prospects, bootstrap, lanes, threads, stop: stop.clone() }
+        Self { kernel, prospects, pool, lanes, threads, stop: stop.clone() }
     }
 
     /// The pool behind the seeds.
-    pub fn bootstrap(&self) -> &Bootstrap {
-        &self.bootstrap
+    pub fn pool(&self) -> &Pool {
+        &self.pool
     }
 
     /// The strategies.
     pub fn mixture(&self) -> &Mixture {
-        &self.mixture
+        &self.kernel.mixture
     }
 
-    /// The strategies, to be kept for as long as their paths are.
-    pub fn shared_mixture(&self) -> Arc<Mixture> {
-        Arc::clone(&self.mixture)
+    /// The law of the chains.
+    pub fn kernel(&self) -> &Kernel {
+        &self.kernel
+    }
+
+    /// The law of the chains, to be kept for as long as their paths are.
+    pub fn shared_kernel(&self) -> Arc<Kernel> {
+        Arc::clone(&self.kernel)
     }
 
     /// Opens an epoch, with these weights of the strategies. The image goes on, since it is the same
     /// whatever the mixture; the counts begin anew.
     pub fn begin_epoch(&mut self, epoch: u32, weights: &[f64]) {
-        let mut mixture = Mixture::clone(&self.mixture);
-        mixture.set_weights(weights);
+        let mut kernel = Kernel::clone(&self.kernel);
+        kernel.mixture.set_weights(weights);
         for Lane { film, chains, rays, .. } in &mut self.lanes {
             *rays = RayCounts::default();
             for chain in chains {
-                chain.begin_epoch(epoch, &mixture, film);
+                chain.begin_epoch(epoch, &kernel, film);
             }
         }
-        self.mixture = Arc::new(mixture);
+        self.kernel = Arc::new(kernel);
     }
 
     /// The states of all chains when the last window on them was opened.
@@ -194,13 +201,13 @@ impl Ensemble {
     /// Every chain takes `steps` steps. With a `window`, the states that each chain passes through
     /// in its first `window` steps are returned, in the order of the lanes.
     pub fn advance(&mut self, scene: &Scene, steps: u64, window: Option<u64>) -> Vec<PathBatch> {
-        let (mixture, stop) = (&self.mixture, &self.stop);
+        let (kernel, stop) = (&*self.kernel, &self.stop);
         let mut batches: Vec<Vec<PathBatch>> = self.lanes.iter().map(|_| Vec::new()).collect();
         parallel::for_each(
             self.threads.min(LANES),
             self.lanes.iter_mut().zip(batches.iter_mut()),
             || (),
-            |(), (lane, out)| *out = lane.advance(scene, (mixture, stop), steps, window),
+            |(), (lane, out)| *out = lane.advance(scene, (kernel, stop), steps, window),
         );
         batches.into_iter().flatten().collect()
     }
@@ -213,7 +220,7 @@ impl Ensemble {
     /// The image in radiance of the file's units; black without steps.
     pub fn image(&self, scene: &Scene) -> Film {
         let mut image = self.splats();
-        let b = self.bootstrap.normalization() * scene.radiance_scale();
+        let b = self.pool.normalization() * scene.radiance_scale();
         let pixels = scene.camera().pixel_count() as f64;
         let steps = self.steps();
         let factor = if steps == 0 { 0.0 } else { b * pixels / steps as f64 };
@@ -224,12 +231,12 @@ impl Ensemble {
     /// Mean luminance of the image and its standard error, in the file's units.
     pub fn normalization(&self, scene: &Scene) -> (f64, f64) {
         let scale = scene.radiance_scale();
-        (self.bootstrap.normalization() * scale, self.bootstrap.normalization_error() * scale)
+        (self.pool.normalization() * scale, self.pool.normalization_error() * scale)
     }
 
     /// Counts of all chains together.
     pub fn statistics(&self) -> ChainStatistics {
-        let mut sum = ChainStatistics::new(self.mixture.len());
+        let mut sum = ChainStatistics::new(self.kernel.mixture.len());
         for lane in &self.lanes {
             for chain in &lane.chains {
                 sum.add(chain.statistics());
@@ -247,7 +254,7 @@ impl Lane {
     fn advance(
         &mut self,
         scene: &Scene,
-        (mixture, stop): (&Mixture, &Stop),
+        (kernel, stop): (&Kernel, &Stop),
         steps: u64,
         window: Option<u64>,
     ) -> Vec<PathBatch> {
@@ -260,13 +267,13 @@ impl Lane {
                 watch.begin(chain);
                 self.checkpoints.push(chain.checkpoint());
                 while watch.is_open() && left > 0 {
-                    let step = chain.step(&scene, mixture, &mut self.film);
+                    let step = chain.step(&scene, kernel, &mut self.film);
                     watch.see(chain, &step);
                     left -= 1;
                 }
             }
             let done = stop.repeat(left, || {
-                chain.step(&scene, mixture, &mut self.film);
+                chain.step(&scene, kernel, &mut self.film);
             });
             chain.flush(&mut self.film);
             chain.settle();

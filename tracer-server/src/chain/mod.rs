@@ -6,6 +6,7 @@ mod bootstrap;
 mod checkpoint;
 mod diagnose;
 mod ensemble;
+mod kernel;
 mod monitor;
 mod pilot;
 mod pool;
@@ -16,21 +17,23 @@ use common::{ChainId, PathHeader, PathId, StrategyId};
 
 use crate::film::Film;
 use crate::math::{Rng, Stream};
-use crate::mutation::{Mixture, Proposal};
-use crate::path::{Draft, Failure, Path};
+use crate::mutation::Proposal;
+use crate::path::{Draft, Failure, Kept, Path};
 use crate::scene::Tracer;
 
 pub use archive::{Archive, Gone, Round};
-pub use bootstrap::{Bootstrap, BootstrapSettings};
+pub use bootstrap::{PoolKey, Source, draw_pool};
 pub use checkpoint::Checkpoint;
 pub use ensemble::{Ensemble, EnsembleSettings, LANES};
-pub use pilot::{PilotSettings, Prospect, explore};
+pub use kernel::Kernel;
+pub use pilot::{PilotSettings, Prospect, Sighting, Survey, survey};
 pub use pool::Pool;
 pub use statistics::{ChainStatistics, StrategyCounts};
 pub use watch::Watch;
 
 pub use monitor::LongestStay;
 
+use kernel::Standing;
 use monitor::Monitor;
 
 /// What became of one step.
@@ -70,10 +73,12 @@ pub struct Chain {
     current: Box<Path>,
     proposal: Box<Path>,
     draft: Box<Draft>,
-    /// `Z` of the current path.
-    mixture_total: f64,
+    /// What the kernel says of the current path.
+    standing: Standing,
     /// Weight that the current path has gathered since it was last splatted.
     pending: f64,
+    /// What a splat of weight one counts on the film.
+    gain: f64,
     steps: u64,
     /// The step that made the current path, and its acceptance probability and strategy.
     arrival: (u64, f64, StrategyId),
@@ -92,6 +97,10 @@ pub struct Trial {
     pub mixture_current: f64,
     /// `Z` of the proposed path; zero where the strategy does not apply to it.
     pub mixture_proposed: f64,
+    /// `rho` of the path before.
+    pub target_current: f64,
+    /// `rho` of the proposed path.
+    pub target_proposed: f64,
 }
 
 /// The probability of accepting a proposal of ratio `ratio`, or `None` when it is no number. The
@@ -103,37 +112,45 @@ pub(crate) fn acceptance(ratio: f64) -> Option<f64> {
 
 impl Chain {
     /// A chain that starts at `seed`. Its stream is keyed by the run's seed number and its id.
-    pub fn new(id: ChainId, run_seed: u64, seed: Path, mixture: &Mixture) -> Self {
-        Self::with_stream(id, Rng::new(run_seed, Stream::Chain, u64::from(id.0)), seed, mixture)
+    pub fn new(id: ChainId, run_seed: u64, seed: Path, kernel: &Kernel) -> Self {
+        Self::with_stream(id, Rng::new(run_seed, Stream::Chain, u64::from(id.0)), seed, kernel)
     }
 
     /// A chain that starts at `seed` and draws its numbers from `rng`.
-    pub fn with_stream(id: ChainId, rng: Rng, seed: Path, mixture: &Mixture) -> Self {
+    pub fn with_stream(id: ChainId, rng: Rng, seed: Path, kernel: &Kernel) -> Self {
         Self {
             id,
             epoch: 0,
             rng,
-            mixture_total: mixture.total(&seed),
+            standing: kernel.stand(&seed),
             current: Box::new(seed),
             proposal: Box::default(),
             draft: Box::default(),
             pending: 0.0,
+            gain: 1.0,
             steps: 0,
             arrival: (0, 1.0, PathHeader::NO_STRATEGY),
             trial: None,
-            statistics: ChainStatistics::new(mixture.len()),
+            statistics: ChainStatistics::new(kernel.mixture.len()),
             monitor: None,
         }
     }
 
-    /// Opens an epoch with another mixture: the path stays, the counts begin anew.
-    pub fn begin_epoch(&mut self, epoch: u32, mixture: &Mixture, film: &mut Film) {
+    /// The chain with every splat on the film multiplied by `gain`.
+    #[must_use]
+    pub fn with_gain(mut self, gain: f64) -> Self {
+        self.gain = gain;
+        self
+    }
+
+    /// Opens an epoch with another kernel of the same target: the path stays, the counts begin anew.
+    pub fn begin_epoch(&mut self, epoch: u32, kernel: &Kernel, film: &mut Film) {
         self.flush(film);
         self.epoch = epoch;
         self.steps = 0;
         self.arrival = (0, 1.0, PathHeader::NO_STRATEGY);
-        self.mixture_total = mixture.total(&self.current);
-        self.statistics = ChainStatistics::new(mixture.len());
+        self.standing = kernel.stand(&self.current);
+        self.statistics = ChainStatistics::new(kernel.mixture.len());
         if let Some(monitor) = &mut self.monitor {
             monitor.begin(self.id, &self.current);
         }
@@ -151,7 +168,7 @@ impl Chain {
     }
 
     /// Steps since the chain came to its current path.
-    fn stay(&self) -> u64 {
+    pub fn stay(&self) -> u64 {
         self.steps - self.arrival.0
     }
 
@@ -194,11 +211,13 @@ impl Chain {
     /// Tries one mutation. Both the current path and the proposal are recorded with their expected
     /// weights [Veach 1997, section 11.5]; the current one when it is left.
     #[inline]
-    pub fn step(&mut self, scene: &Tracer<'_>, mixture: &Mixture, film: &mut Film) -> Step {
+    pub fn step(&mut self, scene: &Tracer<'_>, kernel: &Kernel, film: &mut Film) -> Step {
         self.steps += 1;
         self.trial = None;
-        self.draft.range = None;
-        let chosen = mixture.choose(&self.current, self.mixture_total, &mut self.rng);
+        self.draft.cut = None;
+        let mixture = &kernel.mixture;
+        let total = self.standing.mixture_total;
+        let chosen = mixture.choose(&self.current, total, &mut self.rng);
         let Some(strategy) = chosen else {
             self.pending += 1.0;
             self.look(0.0);
@@ -213,7 +232,7 @@ impl Chain {
             &mut self.proposal,
         );
         let step = match proposed {
-            Ok(proposal) => self.decide(strategy, &proposal, mixture, film),
+            Ok(proposal) => self.decide(strategy, &proposal, kernel, film),
             Err(failure) => self.fail(strategy, failure),
         };
         self.statistics.record(&step);
@@ -231,11 +250,11 @@ impl Chain {
         &mut self,
         strategy: usize,
         proposal: &Proposal,
-        mixture: &Mixture,
+        kernel: &Kernel,
         film: &mut Film,
     ) -> Step {
-        let weighed = self.weigh(strategy, proposal, mixture, self.mixture_total);
-        let Some((a, total)) = weighed else {
+        let weighed = self.weigh(strategy, proposal, kernel, self.standing);
+        let Some((a, standing)) = weighed else {
             return self.fail(strategy, Failure::NotFinite);
         };
         self.pending += 1.0 - a;
@@ -244,41 +263,45 @@ impl Chain {
             self.depart(a);
             std::mem::swap(&mut self.current, &mut self.proposal);
             self.pending = a;
-            self.mixture_total = total;
+            self.standing = standing;
             self.statistics.leave(self.stay());
             self.arrival = (self.steps, a, StrategyId(strategy as u8));
             self.arrive();
-            let Proposal { kept_light, kept_eye, .. } = *proposal;
+            let Kept { light: kept_light, eye: kept_eye } = proposal.kept;
             let outcome = Outcome::Accepted { kept_light, kept_eye };
             return Step { strategy, acceptance: a, outcome };
         }
         if a > 0.0 {
-            film.splat(self.proposal.pixel(), self.proposal.unit_color() * a);
+            let weight = a * standing.importance.share * self.gain;
+            film.splat(self.proposal.pixel(), self.proposal.unit_color() * weight);
         }
         self.look(a);
         Step { strategy, acceptance: a, outcome: Outcome::Rejected }
     }
 
-    /// The acceptance probability of a proposal and its `Z`; `None` where it is no number. `before` is
-    /// `Z` of the current path.
+    /// The acceptance probability of a proposal and what the kernel says of it; `None` where it is no
+    /// number. `before` is what it says of the current path.
     #[inline]
     fn weigh(
         &mut self,
         strategy: usize,
         proposal: &Proposal,
-        mixture: &Mixture,
-        before: f64,
-    ) -> Option<(f64, f64)> {
+        kernel: &Kernel,
+        before: Standing,
+    ) -> Option<(f64, Standing)> {
         // The strategy must also be chosen in the reverse move: Z(x) / Z(y), or never.
-        let applies_back = mixture.get(strategy).applicable(&self.proposal);
-        let total = mixture.total(&self.proposal);
-        let mixing = if applies_back { before / total } else { 0.0 };
+        let applies_back = kernel.mixture.get(strategy).applicable(&self.proposal);
+        let after = kernel.stand(&self.proposal);
+        let mixing = if applies_back { before.mixture_total / after.mixture_total } else { 0.0 };
         self.trial = Some(Trial {
             proposal: *proposal,
-            mixture_current: before,
-            mixture_proposed: if applies_back { total } else { 0.0 },
+            mixture_current: before.mixture_total,
+            mixture_proposed: if applies_back { after.mixture_total } else { 0.0 },
+            target_current: before.importance.rho,
+            target_proposed: after.importance.rho,
         });
-        Some((acceptance(proposal.ratio * mixing)?, total))
+        let aim = after.importance.rho / before.importance.rho;
+        Some((acceptance(proposal.ratio * mixing * aim)?, after))
     }
 
     /// Tries a mutation by `strategy` with numbers from `rng`, and stays: neither the path nor the
@@ -286,13 +309,14 @@ impl Chain {
     pub fn probe(
         &mut self,
         scene: &Tracer<'_>,
-        mixture: &Mixture,
+        kernel: &Kernel,
         strategy: usize,
         rng: &mut Rng,
     ) -> Step {
         self.trial = None;
-        self.draft.range = None;
+        self.draft.cut = None;
         let failed = |reason| Step { strategy, acceptance: 0.0, outcome: Outcome::Failed(reason) };
+        let mixture = &kernel.mixture;
         if !mixture.get(strategy).applicable(&self.current) {
             return failed(Failure::NoSubpath);
         }
@@ -310,11 +334,11 @@ impl Chain {
             Ok(proposal) => proposal,
             Err(reason) => return failed(reason),
         };
-        let before = mixture.total(&self.current);
-        let Some((acceptance, _)) = self.weigh(strategy, &proposal, mixture, before) else {
+        let before = kernel.stand(&self.current);
+        let Some((acceptance, _)) = self.weigh(strategy, &proposal, kernel, before) else {
             return failed(Failure::NotFinite);
         };
-        let Proposal { kept_light, kept_eye, .. } = proposal;
+        let Kept { light: kept_light, eye: kept_eye } = proposal.kept;
         let outcome = if acceptance > 0.0 && rng.uniform() < acceptance {
             Outcome::Accepted { kept_light, kept_eye }
         } else {
@@ -362,7 +386,8 @@ impl Chain {
     /// Adds the current path's gathered weight to the film.
     pub fn flush(&mut self, film: &mut Film) {
         if self.pending > 0.0 {
-            film.splat(self.current.pixel(), self.current.unit_color() * self.pending);
+            let weight = self.pending * self.standing.importance.share * self.gain;
+            film.splat(self.current.pixel(), self.current.unit_color() * weight);
             self.pending = 0.0;
         }
     }

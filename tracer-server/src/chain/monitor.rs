@@ -4,12 +4,12 @@
 //! one that is not. Its tables are written when a state is left, not at every step, and it allocates
 //! nothing after it was made.
 
-use common::{ChainId, PathHeader, TileGrid};
+use common::{ChainId, MAX_VERTICES, PathHeader, TileGrid};
 use glam::DVec2;
 
 use super::Chain;
 use super::blocks::Blocks;
-use crate::path::{MAX_VERTICES, Path, Vertex};
+use crate::path::{Path, Vertex};
 
 /// Chains whose memory is measured: the first ones, since so many know it as well as all.
 const REMEMBERED: u32 = 16;

@@ -12,8 +12,9 @@ use serde::Serialize;
 use crate::math::{Rng, Stream};
 use crate::mutation::{Independent, Mixture, MixtureBasis, Mutation as _, StrategyOptions};
 use crate::parallel::{self, Stop};
-use crate::path::{Aim, BidirectionalSampler, Draft, Path};
+use crate::path::{BidirectionalSampler, CameraSample, Draft, Path};
 use crate::scene::{RayCounts, Scene, Tracer};
+use crate::target::Base;
 
 /// Samples that one stream of random numbers serves.
 const CHUNK: u64 = 512;
@@ -59,9 +60,48 @@ impl fmt::Display for Prospect {
     }
 }
 
+/// A path that a bidirectional sample held.
+#[derive(Clone, Copy, Debug)]
+pub struct Sighting {
+    /// Number of the sample.
+    pub sample: u32,
+    /// Film point, from 0 to 1.
+    pub film: [f32; 2],
+    /// Edges of the path.
+    pub edges: usize,
+    /// What it stands for: `1 / S` over the odds of roulette.
+    pub weight: f64,
+    /// `S_B` of every base sampler.
+    density_sums: [f64; Base::ALL.len()],
+}
+
+impl Sighting {
+    /// `S_B`: zero where the base sampler cannot find the path.
+    pub fn density_sum(&self, base: Base) -> f64 {
+        self.density_sums[base as usize]
+    }
+}
+
+/// What the pilot has seen.
+#[derive(Debug)]
+pub struct Survey {
+    /// The strategies for the chains, with their weights.
+    pub mixture: Mixture,
+    /// What it found of each strategy.
+    pub prospects: Vec<Prospect>,
+    /// Every path of its samples.
+    pub sightings: Vec<Sighting>,
+    /// Bidirectional samples.
+    pub samples: u64,
+    /// Rays that they took.
+    pub rays: RayCounts,
+}
+
 /// What one chunk of samples yields.
 #[derive(Clone, Debug, Default)]
 struct Found {
+    sightings: Vec<Sighting>,
+    rays: RayCounts,
     lengths: Vec<f64>,
     total: f64,
     strategies: Vec<Tries>,
@@ -90,11 +130,7 @@ pub struct PilotSettings {
 }
 
 /// Looks at the scene, and makes the mixture for its chains.
-pub fn explore(
-    scene: &Scene,
-    options: &StrategyOptions,
-    settings: &PilotSettings,
-) -> (Mixture, Vec<Prospect>) {
+pub fn survey(scene: &Scene, options: &StrategyOptions, settings: &PilotSettings) -> Survey {
     let basis = MixtureBasis::of(scene, &[]);
     let blind = Mixture::new(options, &basis);
     let found = look(scene, &blind, settings);
@@ -112,7 +148,8 @@ pub fn explore(
     for (prospect, weight) in prospects.iter_mut().zip(mixture.weights()) {
         prospect.weight = weight / total;
     }
-    (mixture, prospects)
+    let samples = settings.samples.div_ceil(CHUNK) * CHUNK;
+    Survey { mixture, prospects, sightings: found.sightings, samples, rays: found.rays }
 }
 
 /// Weights that favour what crosses many scales of the picture for each ray.
@@ -170,6 +207,8 @@ fn look(scene: &Scene, mixture: &Mixture, settings: &PilotSettings) -> Found {
 impl Found {
     fn new(scene: &Scene, mixture: &Mixture) -> Self {
         Self {
+            sightings: Vec::new(),
+            rays: RayCounts::default(),
             lengths: vec![0.0; scene.max_edges() + 1],
             total: 0.0,
             strategies: vec![Tries::default(); mixture.len()],
@@ -178,6 +217,8 @@ impl Found {
 
     fn merge(&mut self, part: &Self) {
         self.total += part.total;
+        self.sightings.extend_from_slice(&part.sightings);
+        self.rays = self.rays.and(part.rays);
         self.lengths.iter_mut().zip(&part.lengths).for_each(|(sum, part)| *sum += part);
         for (sum, part) in self.strategies.iter_mut().zip(&part.strategies) {
             sum.light += part.light;
@@ -212,12 +253,20 @@ impl<'s> Scout<'s> {
         let mut choice = Rng::new(self.seed, Stream::Pilot, number << 1 | 1);
         self.draft.displacements = number << 24;
         let mut found = Found::new(&self.scene, mixture);
-        for _ in 0..CHUNK {
+        for sample in 0..CHUNK {
             let Self { scene, sampler, x, .. } = self;
-            let aim = Aim::from_numbers(scene, &mut rng);
+            let before = RayCounts::of(scene);
+            let aim = CameraSample::from_numbers(scene, &mut rng);
             let mut sum = 0.0;
             sampler.sample(scene, aim, &mut rng, |path, weight| {
                 found.lengths[path.edge_count()] += weight;
+                found.sightings.push(Sighting {
+                    sample: (number * CHUNK + sample) as u32,
+                    film: path.film().as_vec2().to_array(),
+                    edges: path.edge_count(),
+                    weight,
+                    density_sums: Base::ALL.map(|base| base.density_sum(path)),
+                });
                 for (index, tries) in found.strategies.iter_mut().enumerate() {
                     let applies = mixture.get(index).applicable(path);
                     tries.light += weight * f64::from(u8::from(applies));
@@ -229,6 +278,7 @@ impl<'s> Scout<'s> {
                 }
             });
             found.total += sum;
+            found.rays = found.rays.and(RayCounts::of(scene).since(before));
             if sum > 0.0 {
                 self.try_all(mixture, sum, &mut choice, &mut found.strategies);
             }
@@ -262,8 +312,7 @@ impl<'s> Scout<'s> {
 
 /// Rays of both sorts that a worker has cast.
 fn rays(scene: &Tracer<'_>) -> f64 {
-    let mut counts = RayCounts::default();
-    counts.add(scene);
+    let counts = RayCounts::of(scene);
     (counts.rays + counts.shadow_rays) as f64
 }
 
@@ -280,11 +329,13 @@ mod tests {
     fn the_pilot_does_not_depend_on_threads() {
         let scene = specular_room().build();
         let options = StrategyOptions::default();
-        let (mixture, prospects) = explore(&scene, &options, &settings(1));
-        let (again, same) = explore(&scene, &options, &settings(3));
-        assert_eq!(prospects, same);
-        assert_eq!(mixture.weights(), again.weights());
-        assert_ne!(mixture.weights(), explore(&scene, &off(), &settings(1)).0.weights());
+        let alone = survey(&scene, &options, &settings(1));
+        let together = survey(&scene, &options, &settings(3));
+        assert_eq!(alone.prospects, together.prospects);
+        assert_eq!(alone.rays, together.rays);
+        let weights = alone.mixture.weights();
+        assert_eq!(weights, together.mixture.weights());
+        assert_ne!(weights, survey(&scene, &off(), &settings(1)).mixture.weights());
     }
 
     fn off() -> StrategyOptions {
@@ -296,7 +347,7 @@ mod tests {
     #[test]
     fn who_switches_it_off_keeps_the_weights() {
         let scene = diffuse_room().build();
-        let (mixture, prospects) = explore(&scene, &off(), &settings(2));
+        let Survey { mixture, prospects, .. } = survey(&scene, &off(), &settings(2));
         let basis = MixtureBasis::of(&scene, &[]);
         assert_eq!(mixture.weights(), Mixture::new(&off(), &basis).weights());
         assert!(prospects.iter().all(|p| p.name != "multi-chain"), "nothing is specular");

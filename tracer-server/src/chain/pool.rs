@@ -3,14 +3,12 @@
 //! Because both come from one pool, the image is unbiased however short the chains are
 //! [Veach 1997, section 11.3.1].
 
-use super::BootstrapSettings;
 use crate::math::{Accumulator, Rng};
-use crate::parallel::{self, Stop};
-
-/// Samples that one worker draws in one go.
-const CHUNK: u64 = 2048;
 
 /// The weights of numbered samples. A sample can be drawn again by its number.
+///
+/// How many there are is decided before the first is drawn: a pool that grew until its own spread
+/// looked small would stop too early where rare paths are bright, and stop too dark.
 #[derive(Clone, Debug)]
 pub struct Pool {
     weights: Vec<f64>,
@@ -18,55 +16,23 @@ pub struct Pool {
 }
 
 impl Pool {
-    /// Draws samples until the mean weight is known well enough and the starts are diverse, or until
-    /// the budget is spent. A pool that was told to `stop` is not whole, and has no starts.
-    ///
-    /// `weigh` gives the weight of the sample with a number; `start` makes what a worker needs for
-    /// that. `on_progress` hears the number of samples drawn.
-    pub fn new<S: Send>(
-        settings: &BootstrapSettings,
-        start: impl Fn() -> S + Sync,
-        weigh: impl Fn(&mut S, u64) -> f64 + Sync,
-        stop: &Stop,
-        mut on_progress: impl FnMut(u64),
-    ) -> Self {
-        let mut pool = Self { weights: Vec::new(), total: Accumulator::default() };
-        let draw = |state: &mut S, number: u64| -> Vec<f64> {
-            let samples = number * CHUNK..(number + 1) * CHUNK;
-            if stop.is_set() { Vec::new() } else { samples.map(|n| weigh(state, n)).collect() }
-        };
-        let mut target = settings.min_samples.max(CHUNK);
-        loop {
-            let chunks = pool.weights.len() as u64 / CHUNK..target.div_ceil(CHUNK);
-            let drawn = parallel::map(settings.threads, chunks, &start, draw);
-            if stop.is_set() {
-                pool.weights.clear();
-                return pool;
-            }
-            for weights in drawn {
-                pool.add(weights);
-            }
-            let drawn = pool.sample_count();
-            on_progress(drawn);
-            if pool.is_good(settings) || drawn >= settings.max_samples {
-                return pool;
-            }
-            target = (2 * drawn).min(settings.max_samples);
-        }
-    }
-
-    fn add(&mut self, weights: Vec<f64>) {
+    /// Of these weights.
+    pub fn of(weights: Vec<f64>) -> Self {
+        let mut total = Accumulator::default();
         for &weight in &weights {
-            self.total.add(weight);
+            total.add(weight);
         }
-        self.weights.extend(weights);
+        Self { weights, total }
     }
 
-    fn is_good(&self, settings: &BootstrapSettings) -> bool {
-        let precise = self.total.standard_error() <= settings.relative_error * self.total.mean();
-        let sum = self.total.sum();
-        let diversity = sum * sum / self.total.sum_of_squares();
-        precise && diversity >= 10.0 * f64::from(settings.chains)
+    /// Kurtosis of the weights: 3 for a normal distribution, large where few samples have most of the
+    /// weight, so that an error of the mean cannot be trusted.
+    pub fn kurtosis(&self) -> f64 {
+        let (n, mean) = (self.weights.len() as f64, self.total.mean());
+        let moment = |power: i32| {
+            self.weights.iter().map(|weight| (weight - mean).powi(power)).sum::<f64>() / n
+        };
+        moment(4) / moment(2).powi(2)
     }
 
     /// `b`: the mean weight.

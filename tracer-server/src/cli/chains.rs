@@ -6,7 +6,7 @@ use anyhow::{Context as _, ensure};
 use clap::builder::RangedU64ValueParser;
 use clap::{ArgAction, Args, ValueEnum};
 
-use super::render::IntegratorName;
+use super::integrator::IntegratorName;
 use crate::chain::EnsembleSettings;
 use crate::mutation::{Form, KINDS, Kind, Mixture, Parameter, StrategyOptions};
 use crate::render::Integrator;
@@ -184,7 +184,7 @@ impl ChainArgs {
     pub fn check(&self, integrator: IntegratorName) -> anyhow::Result<()> {
         let StrategyArgs { strategies, without, tune, adapt } = &self.strategies;
         let has_chains = matches!(integrator, IntegratorName::Mlt | IntegratorName::Pssmlt);
-        let has_strategies = integrator == IntegratorName::Mlt;
+        let has_strategies = matches!(integrator, IntegratorName::Auto | IntegratorName::Mlt);
         let idle: Vec<&str> = [
             ("--chains", self.chains.is_some() && !has_chains),
             ("--strategies", !strategies.is_empty() && !has_strategies),

@@ -11,6 +11,7 @@ use comfy_table::presets::{NOTHING, UTF8_FULL_CONDENSED};
 use common::Rgb;
 use glam::DVec3;
 
+use crate::bsdf::{MODELS, ModelKind, Parameter};
 use crate::cli::inventory::{Inventory, LightRow, MaterialRow};
 use crate::scene::Scene;
 use crate::scene::load::load;
@@ -18,17 +19,31 @@ use crate::scene::load::load;
 /// Tells what a scene holds: shapes, materials, lights, camera, what is not modelled, and what the
 /// tracer may therefore leave out.
 #[derive(Args, Clone, Debug)]
-#[command(after_help = "\
-Examples:
-  tracer-server info cornell
-  tracer-server info models/CornellBox-Water.obj
-  tracer-server info scenes/veach-ajar --json")]
+#[command(after_help = examples_and_models())]
 pub struct InfoArgs {
     /// A built-in scene, a .toml, .obj or Mitsuba .xml file, or a directory that holds one.
     pub scene: String,
     /// Print JSON instead of tables.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Examples, and what a material of a .toml scene may say.
+fn examples_and_models() -> String {
+    let examples = "\
+Examples:
+  tracer-server info cornell
+  tracer-server info models/CornellBox-Water.obj
+  tracer-server info scenes/veach-ajar --json
+
+Models of materials in .toml scenes, with their parameters:";
+    let lines = |kind: &ModelKind| {
+        let parameter = |p: &Parameter| format!("\n      {:14} {}", p.name, p.about);
+        let parameters: String = kind.parameters.iter().map(parameter).collect();
+        format!("\n  {}: {}{parameters}", kind.name, kind.about)
+    };
+    let models: String = MODELS.iter().map(lines).collect();
+    format!("{examples}{models}")
 }
 
 /// Loads the scene and prints what it holds.

@@ -6,9 +6,9 @@ use common::{CameraPose, Rgb};
 use glam::DVec3;
 use serde::Serialize;
 
-use crate::bsdf::{Bsdf, Fresnel};
+use crate::bsdf::{Bsdf, BsdfDescription, Inputs as _, Value};
 use crate::scene::load::Loaded;
-use crate::scene::{BsdfDescription, Material, Mesh, Scene, SceneDescription};
+use crate::scene::{Material, Mesh, Scene, SceneDescription};
 
 /// Everything that is told about a scene; lengths in the units of its file.
 #[derive(Clone, Debug, Serialize)]
@@ -166,30 +166,39 @@ fn material_rows(
 ) -> Vec<MaterialRow> {
     let models = scene.models();
     let row = |((material, model), usage): ((&Material, &Bsdf), &Usage)| {
-        let (eta, roughness) = match material.bsdf {
-            BsdfDescription::Lambert { .. } | BsdfDescription::Mirror { .. } => (None, None),
-            BsdfDescription::Dielectric { eta, .. } => (Some(eta), None),
-            BsdfDescription::RoughDielectric { eta, roughness, .. } => (Some(eta), Some(roughness)),
-            BsdfDescription::Conductor { roughness, .. } => (None, Some(roughness)),
-            BsdfDescription::Plastic { fresnel, roughness, .. } => {
-                let eta = match fresnel {
-                    Fresnel::Dielectric { eta, .. } => Some(eta),
-                    _ => None,
-                };
-                (eta, Some(roughness.into()))
-            }
-        };
+        let (eta, roughness) = numbers_of(material.bsdf, description);
         MaterialRow {
             name: material.name.clone(),
             model: model.name(),
             color: model.preview_color(),
             eta,
-            roughness: roughness.map(|input| description.mean_number(input)),
+            roughness,
             emission: material.emission,
             shapes: usage.shapes,
         }
     };
     description.materials.iter().zip(models).zip(usage).map(row).collect()
+}
+
+/// A model's index of refraction, where it is the same for all colours, and its roughness.
+fn numbers_of(
+    mut bsdf: BsdfDescription,
+    description: &SceneDescription,
+) -> (Option<f64>, Option<f64>) {
+    let (mut eta, mut roughness) = (None, None);
+    bsdf.parameters(&mut |name, value| {
+        let number = match value {
+            Value::Number(number, _) => Some(*number),
+            Value::NumberInput(input, _) => Some(description.number(*input)),
+            Value::Share(_) | Value::ShareInput(_) | Value::Indices(_) | Value::Flag(_) => None,
+        };
+        match name {
+            "eta" => eta = number,
+            "roughness" => roughness = number,
+            _ => {}
+        }
+    });
+    (eta, roughness)
 }
 
 fn light_rows(description: &SceneDescription, usage: &[Usage]) -> Vec<LightRow> {

@@ -8,7 +8,9 @@ pub mod chains;
 pub mod door;
 pub mod info;
 pub mod input;
+pub mod integrator;
 mod inventory;
+pub mod merge;
 mod meter;
 pub mod render;
 pub mod scenes;
@@ -38,6 +40,7 @@ Examples:
   tracer-server scenes
   tracer-server info door
   tracer-server render door -o door.png
+  tracer-server merge a.lvf b.lvf -o door.exr
   tracer-server serve cornell --seed 7
   tracer-server verify door
   tracer-server trade door --out trade
@@ -59,6 +62,7 @@ pub struct Cli {
 pub enum Command {
     Serve(serve::ServeArgs),
     Render(render::RenderArgs),
+    Merge(merge::MergeArgs),
     Scenes(scenes::ScenesArgs),
     Info(info::InfoArgs),
     Verify(verify::VerifyArgs),
@@ -70,6 +74,7 @@ impl Command {
         match self {
             Self::Serve(args) => serve::run(args),
             Self::Render(args) => render::run(args),
+            Self::Merge(args) => merge::run(args),
             Self::Scenes(args) => scenes::run(args),
             Self::Info(args) => info::run(args),
             Self::Verify(args) => verify::run(args),

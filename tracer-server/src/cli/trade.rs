@@ -18,12 +18,14 @@ use serde::Serialize;
 
 use super::chains::ChainArgs;
 use super::input::{self, FilmSize};
+use super::integrator::IntegratorName;
 use super::meter::Meter;
-use super::render::{IntegratorName, PrimaryArgs, check_reference, missing, seconds};
+use super::render::{DialArgs, PrimaryArgs, check_reference, missing, seconds};
 use crate::chain::EnsembleSettings;
 use crate::image_file;
 use crate::integrator::pssmlt::PrimarySettings;
 use crate::render::{Budget, Integrator, RenderSettings};
+use crate::replicate::Dial;
 use crate::scene::{MAX_EDGES, Scene, StrategySetting};
 use crate::trade::{Plan, Point, Reference, Run, Setting, Summary, draw, slope, summarize};
 
@@ -50,7 +52,7 @@ pub struct TradeArgs {
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     /// What to measure, as NAME=OPTIONS with the options of `render`; may be repeated. The others
-    /// are compared with the first [default: the four integrators].
+    /// are compared with the first [default: all integrators].
     #[arg(long = "setting", value_name = "NAME=OPTIONS")]
     pub settings: Vec<SettingText>,
     /// What each run may spend, in seconds of wall clock [default: 1,2,4].
@@ -107,12 +109,14 @@ pub struct SettingText {
 #[derive(Clone, Debug, Parser)]
 #[command(no_binary_name = true, disable_help_flag = true)]
 struct SettingOptions {
-    #[arg(long, value_enum, default_value = "mlt")]
+    #[arg(long, value_enum, default_value = "auto")]
     integrator: IntegratorName,
     #[command(flatten)]
     chains: ChainArgs,
     #[command(flatten)]
     primary: PrimaryArgs,
+    #[command(flatten)]
+    dial: DialArgs,
 }
 
 impl FromStr for SettingText {
@@ -161,7 +165,7 @@ impl TradeArgs {
     }
 
     fn settings(&self, scene: &Scene, wishes: &[StrategySetting]) -> anyhow::Result<Vec<Setting>> {
-        let usual = ["path", "bdpt", "pssmlt", "mlt"];
+        let usual = ["auto", "path", "bdpt", "pssmlt", "mlt"];
         let usual = usual.map(|name| format!("{name}=--integrator {name}").parse());
         let usual: Vec<SettingText> = usual.into_iter().flatten().collect();
         let texts = if self.settings.is_empty() { &usual } else { &self.settings };
@@ -178,6 +182,7 @@ impl TradeArgs {
                 budget: Budget::PerPixel(1),
                 ensemble: EnsembleSettings { seed: self.seed, threads: self.threads, ..ensemble },
                 primary: primary.with_context(|| format!("--setting {name}"))?,
+                dial: options.dial.settings(options.integrator)?,
             };
             settings.push(Setting { name: name.clone(), render });
         }
@@ -205,6 +210,7 @@ impl TradeArgs {
             budget: Budget::Time(self.reference_time / 2),
             ensemble: EnsembleSettings::default(),
             primary: PrimarySettings::default(),
+            dial: Dial::default(),
         };
         let meter = Meter::new(format!("reference of {}", scene.name()), "made the reference");
         let reference =
@@ -410,7 +416,7 @@ mod tests {
             "--height",
             "8",
             "--setting",
-            "few=--chains 8",
+            "few=--integrator mlt --chains 8",
             "--setting",
             "tracer=--integrator path",
         ]);

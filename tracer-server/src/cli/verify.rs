@@ -196,7 +196,7 @@ fn conclude(out: &mut impl Write, report: &Report) -> io::Result<()> {
         writeln!(out, "FAIL {}, {}: {}", finding.subject, finding.law, meaning(finding.law))?;
     }
     for finding in with(Verdict::Note) {
-        writeln!(out, "note {}, {}: {}", finding.subject, finding.law, note(finding.law))?;
+        writeln!(out, "note {}, {}: {}", finding.subject, finding.law, advice(finding.law))?;
     }
     let unjudged = with(Verdict::Unjudged).count();
     if unjudged > 0 {
@@ -237,7 +237,7 @@ fn meaning(law: &str) -> &'static str {
 }
 
 /// What is worth knowing though no law is broken, in plain words.
-fn note(law: &str) -> &'static str {
+fn advice(law: &str) -> &'static str {
     match law {
         "visits of classes" => {
             "each of these carries more than 0.01 % of the light, but the chains did not come by: \

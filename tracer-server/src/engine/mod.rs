@@ -1,7 +1,7 @@
 //! The daemon's chains at work: rounds without end, with reports to the hub in between, and changes
 //! where the driver wants them.
 
-mod plant;
+mod runner;
 
 use std::io;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::hub::Hub;
 use crate::path::Failure;
 use crate::scene::Scene;
 use crate::steering::Envelope;
-use plant::Plant;
+use runner::ChainRunner;
 
 /// Time between two reports of statistics.
 const STATISTICS_INTERVAL: Duration = Duration::from_millis(500);
@@ -46,9 +46,9 @@ impl Engine {
     ) -> io::Result<Self> {
         let stop = Arc::new(AtomicBool::new(false));
         let (settings, stopped) = (*settings, Arc::clone(&stop));
-        let thread = thread::Builder::new()
-            .name("lvis-engine".to_owned())
-            .spawn(move || Plant::new(&scene, &settings, &hub, &archive).run(&orders, &stopped))?;
+        let thread = thread::Builder::new().name("lvis-engine".to_owned()).spawn(move || {
+            ChainRunner::new(&scene, &settings, &hub, &archive).run(&orders, &stopped);
+        })?;
         Ok(Self { stop, thread: Some(thread) })
     }
 }

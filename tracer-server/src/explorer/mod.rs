@@ -25,7 +25,7 @@ use crate::chain::Archive;
 use crate::hub::{FocusNews, Hub};
 use crate::scene::Scene;
 use crate::steering::{Envelope, ExplorerMail, Steering};
-use walker::Walker;
+use walker::{Progress, Walker};
 
 /// Steps of a burst while it skips, and the rest after it: at most twenty thousand steps a second, so
 /// that those who watch can follow and the chains keep the processors.
@@ -51,14 +51,15 @@ impl Explorer {
     /// Starts an explorer of `scene` that follows `orders` and takes its paths from the `archive`.
     /// `steering` is the other end of `orders`.
     pub fn start(
-        (scene, seed): (Arc<Scene>, u64),
+        scene: Arc<Scene>,
+        seed: u64,
         archive: Arc<Archive>,
         hub: Hub,
         steering: Steering,
         orders: Receiver<ExplorerMail>,
     ) -> io::Result<Self> {
         let stop = Arc::new(AtomicBool::new(false));
-        let guide = Guide {
+        let explorer = ExplorerLoop {
             walker: Walker::new(scene, seed),
             archive,
             hub,
@@ -70,7 +71,7 @@ impl Explorer {
         let stopped = Arc::clone(&stop);
         let thread = thread::Builder::new()
             .name("lvis-explorer".to_owned())
-            .spawn(move || guide.run(&orders, &stopped))?;
+            .spawn(move || explorer.run(&orders, &stopped))?;
         Ok(Self { stop, steering, thread: Some(thread) })
     }
 }
@@ -116,9 +117,9 @@ impl Goal {
     }
 }
 
-/// What the explorer's thread owns.
+/// The explorer's thread: it waits for orders, and takes steps while it plays.
 #[derive(Debug)]
-struct Guide {
+struct ExplorerLoop {
     walker: Walker,
     archive: Arc<Archive>,
     hub: Hub,
@@ -128,7 +129,7 @@ struct Guide {
     reported: Instant,
 }
 
-impl Guide {
+impl ExplorerLoop {
     fn run(mut self, orders: &Receiver<ExplorerMail>, stop: &AtomicBool) {
         self.announce();
         while !stop.load(Ordering::Relaxed) {
@@ -145,10 +146,10 @@ impl Guide {
                 Some(wait) => orders.recv_timeout(wait),
             };
             match mail {
-                Ok(ExplorerMail::Order(order)) => self.follow(order),
+                Ok(ExplorerMail::Order(order)) => self.answer(order),
                 Ok(ExplorerMail::Inspect(session, path)) => self.inspect(session, path),
                 Ok(ExplorerMail::Wake) => self.wake(),
-                Err(RecvTimeoutError::Timeout) => self.go(),
+                Err(RecvTimeoutError::Timeout) => self.take_due_steps(),
                 Err(RecvTimeoutError::Disconnected) => return,
             }
         }
@@ -161,10 +162,10 @@ impl Guide {
         }
     }
 
-    fn follow(&mut self, order: Envelope<ExplorerCommand>) {
+    fn answer(&mut self, order: Envelope<ExplorerCommand>) {
         let Envelope { author, request, command } = order;
         let session = author.session;
-        let done = self.obey(command);
+        let done = self.carry_out(command);
         if done.is_ok() {
             self.by = Some(author);
             self.report();
@@ -178,7 +179,7 @@ impl Guide {
         self.hub.tell(session, Notice::Detail(Box::new(DetailReply { path, found })));
     }
 
-    fn obey(&mut self, command: ExplorerCommand) -> Result<(), String> {
+    fn carry_out(&mut self, command: ExplorerCommand) -> Result<(), String> {
         if !self.walker.is_seeded() && !matches!(command, ExplorerCommand::Seed(_)) {
             return Err("the explorer has no path yet: seed it with one first".to_owned());
         }
@@ -230,11 +231,11 @@ impl Guide {
     /// Begins a skip with its first burst, so that a single step is seen at once.
     fn skip(&mut self, goal: Goal, steps: u64) {
         self.pace = Going::Skipping(goal, steps);
-        self.go();
+        self.take_due_steps();
     }
 
     /// Takes the steps that are due.
-    fn go(&mut self) {
+    fn take_due_steps(&mut self) {
         match self.pace {
             Going::Paused => return,
             Going::Playing(due) => self.play(due),
@@ -292,7 +293,7 @@ impl Guide {
     }
 
     fn announce(&self) {
-        let (steps, accepted) = self.walker.counts();
+        let Progress { steps, accepted } = self.walker.progress();
         let state = ExplorerState {
             pace: match self.pace {
                 Going::Paused => Pace::Paused,

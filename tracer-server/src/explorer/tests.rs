@@ -35,7 +35,7 @@ fn watched(scene: &Scene, rounds: usize, limit: usize) -> (Archive, Vec<PathBatc
         }
         shown.extend(ensemble.advance(scene, 200, Some(WINDOW)));
         let checkpoints = ensemble.take_checkpoints();
-        archive.put(Round::new(ensemble.shared_mixture(), 1.0, WINDOW, checkpoints));
+        archive.put(Round::new(ensemble.shared_kernel(), 1.0, WINDOW, checkpoints));
     }
     (archive, shown, ensemble)
 }
@@ -174,7 +174,9 @@ fn steps_tell_what_happened_and_nothing_is_missing() {
         assert_eq!(path, *after, "step {i}");
         assert!(step.kept_light + step.kept_eye <= step.length, "{step:?}");
         let told = step.factors;
-        let ratio = told.backward / told.forward * told.mixture_current / told.mixture_proposed;
+        let ratio = told.backward / told.forward * told.mixture_current / told.mixture_proposed
+            * told.target_proposed
+            / told.target_current;
         match step.outcome {
             FocusOutcome::Failed(_) => {
                 outcomes[0] += 1;
@@ -196,7 +198,8 @@ fn steps_tell_what_happened_and_nothing_is_missing() {
     assert!(outcomes.iter().all(|&count| count > 100), "every outcome is seen: {outcomes:?}");
     assert!(blocked > 20, "{blocked} blocked connections are marked");
     assert!(meant * 10 > outcomes[0] * 9, "{meant} of {} failures say their range", outcomes[0]);
-    assert_eq!(walker.counts(), (3000, outcomes[2] as u64));
+    let progress = walker.progress();
+    assert_eq!((progress.steps, progress.accepted), (3000, outcomes[2] as u64));
 }
 
 #[test]

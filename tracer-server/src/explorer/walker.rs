@@ -8,12 +8,11 @@ use common::{
     StrategyId, StrategySet, VertexRecord,
 };
 
-use crate::chain::{Archive, Chain, Checkpoint, Outcome, Round, Step};
+use crate::chain::{Archive, Chain, Checkpoint, Kernel, Outcome, Round, Step};
 use crate::film::Film;
 use crate::hub::FocusNews;
 use crate::math::{Rng, Stream};
-use crate::mutation::Mixture;
-use crate::path::{Failure, Path, Vertex};
+use crate::path::{Cut, Draft, Failure, Kept, Path, Vertex};
 use crate::scene::{RayCounts, Scene, Tracer};
 
 /// Paths of its own that the explorer can go back to: about two megabytes.
@@ -36,6 +35,13 @@ pub(super) struct Walker {
     memory: VecDeque<Checkpoint>,
 }
 
+/// How far a walk has come.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Progress {
+    pub(super) steps: u64,
+    pub(super) accepted: u64,
+}
+
 /// A walk from a seed.
 #[derive(Debug)]
 struct Walk {
@@ -44,7 +50,7 @@ struct Walk {
     origin: PathId,
     round: Arc<Round>,
     /// The strategies that may act.
-    mixture: Mixture,
+    kernel: Kernel,
     current: Arc<FocusPath>,
     steps: u64,
     accepted: u64,
@@ -76,7 +82,7 @@ impl Walker {
 
     /// Names of the strategies, in their order.
     pub(super) fn strategies(&self) -> Vec<String> {
-        self.walk.as_ref().map(|walk| walk.mixture.names()).unwrap_or_default()
+        self.walk.as_ref().map(|walk| walk.kernel.mixture.names()).unwrap_or_default()
     }
 
     /// The strategies that may act.
@@ -100,8 +106,9 @@ impl Walker {
     }
 
     /// Steps since it was seeded, and how many of them were accepted.
-    pub(super) fn counts(&self) -> (u64, u64) {
-        self.walk.as_ref().map_or((0, 0), |walk| (walk.steps, walk.accepted))
+    pub(super) fn progress(&self) -> Progress {
+        let progress = |walk: &Walk| Progress { steps: walk.steps, accepted: walk.accepted };
+        self.walk.as_ref().map(progress).unwrap_or_default()
     }
 
     /// Makes a path the current one; or says why it cannot.
@@ -113,8 +120,8 @@ impl Walker {
                 .ok_or("no path has been shown yet; watch the chains and try again")?,
         };
         let (path, round) = self.path(origin, archive)?;
-        let mixture = restricted(&round.mixture, self.allowed)?;
-        self.begin(path, origin, round, mixture);
+        let kernel = restricted(&round.kernel, self.allowed)?;
+        self.begin(path, origin, round, kernel);
         Ok(self.arrived())
     }
 
@@ -126,7 +133,7 @@ impl Walker {
             let (checkpoint, walk) = known.zip(self.walk.as_ref()).ok_or_else(|| {
                 format!("the path {id} is gone: the explorer keeps its last {MEMORY} paths")
             })?;
-            let chain = Chain::resume(&scene, checkpoint, &walk.mixture)
+            let chain = Chain::resume(&scene, checkpoint, &walk.kernel)
                 .map_err(|failure| format!("the path {id} is no path: {}", failure.name()))?;
             return Ok((chain.current().clone(), Arc::clone(&walk.round)));
         }
@@ -145,11 +152,11 @@ impl Walker {
     /// Restricts which strategies may act; the path stays, in an epoch of its own.
     pub(super) fn allow(&mut self, set: StrategySet) -> Result<FocusNews, String> {
         if let Some(walk) = self.walk.take() {
-            match restricted(&walk.round.mixture, set) {
-                Ok(mixture) => {
+            match restricted(&walk.round.kernel, set) {
+                Ok(kernel) => {
                     self.allowed = set;
                     let path = walk.chain.current().clone();
-                    self.begin(path, walk.origin, walk.round, mixture);
+                    self.begin(path, walk.origin, walk.round, kernel);
                 }
                 Err(error) => {
                     self.walk = Some(walk);
@@ -160,14 +167,14 @@ impl Walker {
         Ok(self.arrived())
     }
 
-    fn begin(&mut self, path: Path, origin: PathId, round: Arc<Round>, mixture: Mixture) {
+    fn begin(&mut self, path: Path, origin: PathId, round: Arc<Round>, kernel: Kernel) {
         self.epoch += 1;
         let rng = Rng::new(self.run_seed, Stream::Explorer, self.epoch.into());
-        let mut chain = Chain::with_stream(ChainId::EXPLORER, rng, path, &mixture);
+        let mut chain = Chain::with_stream(ChainId::EXPLORER, rng, path, &kernel);
         self.film = Film::new(self.film.width(), self.film.height());
-        chain.begin_epoch(self.epoch, &mixture, &mut self.film);
+        chain.begin_epoch(self.epoch, &kernel, &mut self.film);
         let current = Arc::new(focus_path(&chain, self.number));
-        self.walk = Some(Walk { chain, origin, round, mixture, current, steps: 0, accepted: 0 });
+        self.walk = Some(Walk { chain, origin, round, kernel, current, steps: 0, accepted: 0 });
         self.remember();
     }
 
@@ -181,11 +188,11 @@ impl Walker {
     pub(super) fn step(&mut self) -> (Arc<FocusStep>, Arc<FocusPath>) {
         let scene = Tracer::new(&self.scene);
         let Some(walk) = &mut self.walk else { return Default::default() };
-        let step = walk.chain.step(&scene, &walk.mixture, &mut self.film);
+        let step = walk.chain.step(&scene, &walk.kernel, &mut self.film);
         walk.steps += 1;
         let id = PathId { chain: ChainId::EXPLORER, epoch: self.epoch, step: walk.chain.steps() };
         let moved = matches!(step.outcome, Outcome::Accepted { .. });
-        let told = FocusStep { number: self.number, id, ..walk.look(&scene, &step) };
+        let told = FocusStep { number: self.number, id, ..walk.describe(&scene, &step) };
         self.number += 1;
         walk.accepted += u64::from(moved);
         let after =
@@ -215,14 +222,15 @@ impl Walker {
         let Some(walk) = &mut self.walk else { return self.arrived() };
         let index = usize::from(strategy.0);
         // The weights of all strategies: a fan may show one that must not act now.
-        let mixture = if walk.mixture.weights().get(index).is_some_and(|&weight| weight > 0.0) {
-            &walk.mixture
+        let weights = walk.kernel.mixture.weights();
+        let kernel = if weights.get(index).is_some_and(|&weight| weight > 0.0) {
+            &walk.kernel
         } else {
-            &*walk.round.mixture
+            &*walk.round.kernel
         };
-        let step = walk.chain.probe(&scene, mixture, index, &mut self.fan);
+        let step = walk.chain.probe(&scene, kernel, index, &mut self.fan);
         let id = walk.current.header.id;
-        let seen = walk.look(&scene, &step);
+        let seen = walk.describe(&scene, &step);
         let told = FocusStep { number: self.number, id, fan: true, strategy, ..seen };
         self.number += 1;
         if let Some(after) = walk.current.after(&told) {
@@ -257,7 +265,7 @@ impl Walker {
 
 impl Walk {
     /// What is seen of a step that the chain has just tried. Number, id and fan are still to be set.
-    fn look(&self, scene: &Tracer<'_>, step: &Step) -> FocusStep {
+    fn describe(&self, scene: &Tracer<'_>, step: &Step) -> FocusStep {
         let mut rays = RayCounts::default();
         rays.add(scene);
         let failed = matches!(step.outcome, Outcome::Failed(_));
@@ -266,8 +274,10 @@ impl Walk {
             backward: trial.proposal.backward,
             mixture_current: trial.mixture_current,
             mixture_proposed: trial.mixture_proposed,
+            target_current: trial.target_current,
+            target_proposed: trial.target_proposed,
         });
-        let stuck = failed && !(self.mixture.total(self.chain.current()) > 0.0);
+        let stuck = failed && !(self.kernel.mixture.total(self.chain.current()) > 0.0);
         let told = FocusStep {
             strategy: StrategyId(if stuck { u8::MAX } else { step.strategy as u8 }),
             acceptance: step.acceptance,
@@ -277,36 +287,36 @@ impl Walk {
             ..FocusStep::default()
         };
         match step.outcome {
-            Outcome::Failed(reason) => self.look_at_failure(scene, reason, told),
+            Outcome::Failed(reason) => self.describe_failure(scene, reason, told),
             Outcome::Rejected => {
-                let kept = self.chain.trial().map(|t| (t.proposal.kept_light, t.proposal.kept_eye));
-                look_at_proposal(self.chain.proposed(), kept.unwrap_or_default(), told)
+                let kept = self.chain.trial().map(|trial| trial.proposal.kept);
+                describe_proposal(self.chain.proposed(), kept.unwrap_or_default(), told)
             }
             // A step has moved the chain, a probe has not.
             Outcome::Accepted { kept_light, kept_eye } => {
                 let moved = self.chain.header().id.step != self.current.header.id.step;
                 let y = if moved { self.chain.current() } else { self.chain.proposed() };
                 let told = FocusStep { outcome: FocusOutcome::Accepted, ..told };
-                look_at_proposal(y, (kept_light, kept_eye), told)
+                describe_proposal(y, Kept { light: kept_light, eye: kept_eye }, told)
             }
         }
     }
 
-    fn look_at_failure(&self, scene: &Tracer<'_>, reason: Failure, told: FocusStep) -> FocusStep {
+    fn describe_failure(&self, scene: &Tracer<'_>, reason: Failure, told: FocusStep) -> FocusStep {
         let outcome = FocusOutcome::Failed(reason as u8);
         let draft = self.chain.draft();
         let x = self.chain.current();
-        let Some((kept_light, kept_from)) = draft.range else {
+        let Some(cut) = draft.cut else {
             return FocusStep { outcome, kept_light: told.length, ..told };
         };
-        let blocker = (reason == Failure::Occluded)
-            .then(|| blocker(scene, x, (kept_light, kept_from), (&draft.light, &draft.eye)));
+        let blocker = (reason == Failure::Occluded).then(|| blocker(scene, x, cut, draft));
         // A light infinitely far away moves with the vertex that it shines on.
-        let kept = if kept_light == 1 && x.is_lit_from_afar() { 0 } else { kept_light };
+        let moves = cut.light == 1 && x.is_lit_from_afar();
+        let kept_light = if moves { 0 } else { cut.light };
         FocusStep {
             outcome,
-            kept_light: kept,
-            kept_eye: told.length.saturating_sub(kept_from).min(told.length - kept),
+            kept_light,
+            kept_eye: cut.kept(told.length).eye.min(told.length - kept_light),
             inserted: records(&draft.light),
             eye_side: records(&draft.eye),
             blocker: blocker.flatten(),
@@ -316,16 +326,12 @@ impl Walk {
 }
 
 /// What is seen of a complete proposal.
-fn look_at_proposal(
-    y: &Path,
-    (kept_light, kept_eye): (usize, usize),
-    told: FocusStep,
-) -> FocusStep {
-    let end = y.vertices().len().saturating_sub(kept_eye);
+fn describe_proposal(y: &Path, kept: Kept, told: FocusStep) -> FocusStep {
+    let end = y.vertices().len().saturating_sub(kept.eye);
     FocusStep {
-        kept_light,
-        kept_eye,
-        inserted: records(y.vertices().get(kept_light..end).unwrap_or_default()),
+        kept_light: kept.light,
+        kept_eye: kept.eye,
+        inserted: records(y.vertices().get(kept.light..end).unwrap_or_default()),
         film: y.film().as_vec2().to_array(),
         luminance: (1.0 / y.density_sum()) as f32,
         rgb: y.unit_color().to_f32(),
@@ -334,14 +340,9 @@ fn look_at_proposal(
 }
 
 /// The surface in the way between the two sides of a failed proposal.
-fn blocker(
-    scene: &Tracer<'_>,
-    x: &Path,
-    (kept_light, kept_from): (usize, usize),
-    (light, eye): (&[Vertex], &[Vertex]),
-) -> Option<[f32; 3]> {
-    let a = light.last().or_else(|| x.vertices().get(kept_light.checked_sub(1)?))?;
-    let b = eye.last().or_else(|| x.vertices().get(kept_from))?;
+fn blocker(scene: &Tracer<'_>, x: &Path, cut: Cut, draft: &Draft) -> Option<[f32; 3]> {
+    let a = draft.light.last().or_else(|| x.vertices().get(cut.light.checked_sub(1)?))?;
+    let b = draft.eye.last().or_else(|| x.vertices().get(cut.eye_from))?;
     // From b, which is always a place.
     let (direction, distance) = if a.is_lamp() && scene.is_infinite(a.material) {
         (-a.normal, f64::INFINITY)
@@ -354,9 +355,10 @@ fn blocker(
     is_between.then(|| hit.position.as_vec3().to_array())
 }
 
-/// The mixture with nothing but the strategies of a set.
-fn restricted(mixture: &Mixture, set: StrategySet) -> Result<Mixture, String> {
-    let mut mixture = mixture.clone();
+/// The kernel with nothing but the strategies of a set.
+fn restricted(kernel: &Kernel, set: StrategySet) -> Result<Kernel, String> {
+    let mut kernel = kernel.clone();
+    let mixture = &mut kernel.mixture;
     let keep = |(index, &weight): (usize, &f64)| {
         if set.contains(StrategyId(index as u8)) { weight } else { 0.0 }
     };
@@ -365,7 +367,7 @@ fn restricted(mixture: &Mixture, set: StrategySet) -> Result<Mixture, String> {
         return Err("none of the strategies that may act is switched on; allow others".to_owned());
     }
     mixture.set_weights(&weights);
-    Ok(mixture)
+    Ok(kernel)
 }
 
 fn records(vertices: &[Vertex]) -> Vec<VertexRecord> {

@@ -4,12 +4,12 @@ use common::Rgb;
 use glam::{DMat3, DVec3};
 
 use super::{Expected, Extreme, SIDE, check_all, like, row};
-use crate::bsdf::Fresnel;
+use crate::bsdf::{
+    BsdfDescription, ConductorDescription, DielectricDescription, Fresnel, MirrorDescription,
+};
 use crate::integrator::laws::{BLACK, bidirectional, furnace, lit_by_sphere, sphere_over_plane};
 use crate::scene::fixtures::{Fixture, MIRROR, coated_room, diffuse_room, lambert, specular_room};
-use crate::scene::{BsdfDescription, Glow, Mesh, SkyImage};
-
-const CLEAR: Rgb = Rgb::WHITE;
+use crate::scene::{LightKind, Mesh, SkyImage};
 
 fn small(fixture: Fixture) -> Fixture {
     fixture.film(SIDE, SIDE).max_edges(5)
@@ -55,7 +55,7 @@ fn sun(elevation: f64) -> Fixture {
     let direction = DVec3::new(elevation.cos(), -elevation.sin(), 0.0);
     Fixture::new(DVec3::new(0.0, 1.0, 0.4), DVec3::ZERO, 10.0)
         .quad(lambert(0.6, 0.6, 0.6), Rgb::BLACK, [-9., 0., -9.], [0., 0., 18.], [18., 0., 0.])
-        .light(Glow::Directional { direction, irradiance: Rgb::grey(3.0) })
+        .light(LightKind::Directional { direction, irradiance: Rgb::grey(3.0) })
         .film(4, 4)
         .max_edges(2)
 }
@@ -66,7 +66,10 @@ fn point_near_plane(height: f64) -> (Fixture, f64) {
     let (distance, fov, rho, i) = (2.0, 40.0_f64, 0.6, 5.0);
     let fixture = Fixture::new(DVec3::new(0.1, distance, 0.2), DVec3::new(0.1, 0.0, 0.2), fov)
         .quad(lambert(rho, rho, rho), Rgb::BLACK, [-9., 0., -9.], [0., 0., 18.], [18., 0., 0.])
-        .light(Glow::Point { position: DVec3::new(0.17, height, 0.26), intensity: Rgb::grey(i) })
+        .light(LightKind::Point {
+            position: DVec3::new(0.17, height, 0.26),
+            intensity: Rgb::grey(i),
+        })
         .film(4, 4)
         .max_edges(2);
     let side = 2.0 * distance * (0.5 * fov.to_radians()).tan();
@@ -76,12 +79,12 @@ fn point_near_plane(height: f64) -> (Fixture, f64) {
 }
 
 /// An even sky with one texel that outshines it.
-fn hot_sky() -> Glow {
+fn hot_sky() -> LightKind {
     let (width, height) = (16, 8);
     let mut texels = vec![[0.5; 3]; width * height];
     texels[2 * width + 7] = [1e10; 3];
     let image = Some(SkyImage { width, height, texels });
-    Glow::Environment { radiance: Rgb::WHITE, image, rotation: DMat3::from_rotation_y(0.4) }
+    LightKind::Environment { radiance: Rgb::WHITE, image, rotation: DMat3::from_rotation_y(0.4) }
 }
 
 /// The lamp of the room cut into `2 n^2` triangles.
@@ -141,7 +144,7 @@ fn ball_in_glow(bsdf: BsdfDescription, origin: DVec3, edges: usize) -> Fixture {
 }
 
 fn clear(eta: f64) -> BsdfDescription {
-    BsdfDescription::Dielectric { eta, reflectance: CLEAR, transmittance: CLEAR }
+    BsdfDescription::from(DielectricDescription::clear(eta))
 }
 
 /// The room with its mirror ball of another material.
@@ -153,13 +156,13 @@ fn ball_of(bsdf: BsdfDescription) -> Fixture {
 }
 
 fn rough_mirror(roughness: f64) -> BsdfDescription {
-    let BsdfDescription::Mirror { reflectance } = MIRROR else {
+    let BsdfDescription::Mirror(MirrorDescription { reflectance }) = MIRROR else {
         unreachable!("it is a mirror");
     };
-    BsdfDescription::Conductor {
+    BsdfDescription::Conductor(ConductorDescription {
         fresnel: Fresnel::Constant(reflectance),
         roughness: roughness.into(),
-    }
+    })
 }
 
 #[test]

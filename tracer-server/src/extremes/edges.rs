@@ -22,7 +22,7 @@ fn a_black_picture_has_no_normalization() {
     let mut ensemble = Ensemble::new(&scene, &settings(0, 64), |_| ());
     ensemble.advance(&scene, 100, None);
     assert_eq!(ensemble.chain_count(), 0, "there is nothing to start from");
-    assert_eq!(ensemble.bootstrap().normalization().to_bits(), 0, "b = 0");
+    assert_eq!(ensemble.pool().normalization().to_bits(), 0, "b = 0");
     for image in [ensemble.image(&scene), path_traced(&scene, 1, 4), bidirectional(&scene, 1, 4)] {
         assert!(image.pixels().iter().all(|p| p.is_black()), "black, not NaN");
     }

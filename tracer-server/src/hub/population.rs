@@ -124,7 +124,7 @@ impl Population {
         self.paths_dropped += gap.paths;
         match self.ready.back_mut() {
             Some(Ready::Gap(last)) => add(last, gap),
-            _ => self.ready.push_back(Ready::Gap(gap)),
+            Some(Ready::Batch(_)) | None => self.ready.push_back(Ready::Gap(gap)),
         }
     }
 
@@ -274,7 +274,7 @@ impl Population {
         }
         match at.checked_sub(1).and_then(|before| self.ready.get_mut(before)) {
             Some(Ready::Gap(before)) => add(before, gap),
-            _ => self.ready.insert(at, Ready::Gap(gap)),
+            Some(Ready::Batch(_)) | None => self.ready.insert(at, Ready::Gap(gap)),
         }
     }
 }

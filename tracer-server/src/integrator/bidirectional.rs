@@ -6,7 +6,7 @@ use crate::chain::LANES;
 use crate::film::Film;
 use crate::math::{Rng, Stream};
 use crate::parallel;
-use crate::path::{Aim, BidirectionalSampler};
+use crate::path::{BidirectionalSampler, CameraSample, Path};
 use crate::scene::{RayCounts, Scene, Tracer};
 
 /// Renders by bidirectional path tracing, pass by pass.
@@ -15,6 +15,8 @@ pub struct BidirectionalTracer {
     lanes: Vec<Film>,
     seed: u64,
     samples: u64,
+    /// Samples through points anywhere on the film.
+    scattered: u64,
     rays: RayCounts,
 }
 
@@ -26,6 +28,7 @@ impl BidirectionalTracer {
             lanes: vec![Film::new(camera.width, camera.height); LANES],
             seed,
             samples: 0,
+            scattered: 0,
             rays: RayCounts::default(),
         }
     }
@@ -55,6 +58,26 @@ impl BidirectionalTracer {
         self.samples
     }
 
+    /// Draws `count` samples through points anywhere on the film: less than a sample through every pixel,
+    /// where time allows no more.
+    pub fn scatter(&mut self, scene: &Scene, count: u64) {
+        let scene = Tracer::new(scene);
+        let mut sampler = BidirectionalSampler::new(&scene);
+        let mut rng = Rng::new(self.seed, Stream::Scattered, self.scattered);
+        let film = &mut self.lanes[0];
+        for _ in 0..count {
+            let aim = CameraSample::from_numbers(&scene, &mut rng);
+            sampler.sample(&scene, aim, &mut rng, |path, weight| splat(film, path, weight));
+        }
+        self.rays.add(&scene);
+        self.scattered += count;
+    }
+
+    /// Samples through points anywhere on the film so far.
+    pub fn scattered(&self) -> u64 {
+        self.scattered
+    }
+
     /// Rays cast so far.
     pub fn rays(&self) -> RayCounts {
         self.rays
@@ -63,8 +86,18 @@ impl BidirectionalTracer {
     /// The image in radiance of the file's units.
     pub fn image(&self, scene: &Scene) -> Film {
         let mut image = Film::sum(&self.lanes);
-        image.scale(scene.radiance_scale() / self.samples.max(1) as f64);
+        let scattered = self.scattered as f64 / scene.camera().pixel_count() as f64;
+        let samples = self.samples as f64 + scattered;
+        image.scale(scene.radiance_scale() / if samples > 0.0 { samples } else { 1.0 });
         image
+    }
+}
+
+/// Adds a path of a sample to the film, unless it is no number.
+fn splat(film: &mut Film, path: &Path, weight: f64) {
+    let color = path.unit_color() * weight;
+    if color.is_physical() {
+        film.splat(path.pixel(), color);
     }
 }
 
@@ -80,13 +113,8 @@ fn render_lane(scene: &Tracer<'_>, film: &mut Film, lane: usize, (seed, pass): (
                 (x as f64 + rng.uniform()) / width as f64,
                 (y as f64 + rng.uniform()) / height as f64,
             );
-            let aim = Aim::through(scene, film_point, || rng.array());
-            sampler.sample(scene, aim, &mut rng, |path, weight| {
-                let splat = path.unit_color() * weight;
-                if splat.is_physical() {
-                    film.splat(path.pixel(), splat);
-                }
-            });
+            let aim = CameraSample::through(scene, film_point, || rng.array());
+            sampler.sample(scene, aim, &mut rng, |path, weight| splat(film, path, weight));
         }
     }
 }

@@ -6,6 +6,7 @@ use tests::{Accumulator, Suite, ZScore, block_means, z_map};
 
 use super::pssmlt::{PrimaryEnsemble, PrimarySampler, PrimarySettings};
 use super::{BidirectionalTracer, PathTracer};
+use crate::bsdf::{BsdfDescription, DielectricDescription, MirrorDescription};
 use crate::chain::{Ensemble, EnsembleSettings};
 use crate::film::Film;
 use crate::scene::fixtures::{
@@ -13,7 +14,7 @@ use crate::scene::fixtures::{
     wall_in_a_pane,
 };
 use crate::scene::load::load;
-use crate::scene::{BsdfDescription, Glow, Scene, builtin};
+use crate::scene::{LightKind, Scene, builtin};
 
 pub(crate) const BLACK: BsdfDescription = lambert(0.0, 0.0, 0.0);
 
@@ -138,7 +139,7 @@ fn a_point_light_fills_a_sphere() {
     // From outside one looks through the back of the near side, which is lit alike.
     let scene = Fixture::new(DVec3::new(0.1, 0.0, 0.3), DVec3::new(0.0, 0.1, -1.0), 60.0)
         .sphere(lambert(rho, rho, rho), Rgb::BLACK, [0.0; 3], radius)
-        .light(Glow::Point { position: DVec3::ZERO, intensity: Rgb::grey(i) })
+        .light(LightKind::Point { position: DVec3::ZERO, intensity: Rgb::grey(i) })
         .film(8, 8)
         .max_edges(n.into())
         .build();
@@ -153,7 +154,7 @@ fn the_sun_lights_a_plane() {
     let direction = DVec3::new(1.0, -2.0, 0.5);
     let scene = Fixture::new(DVec3::new(0.0, 1.0, 0.4), DVec3::ZERO, 10.0)
         .quad(lambert(0.6, 0.6, 0.6), Rgb::BLACK, [-9., 0., -9.], [0., 0., 18.], [18., 0., 0.])
-        .light(Glow::Directional { direction, irradiance: Rgb::grey(3.0) })
+        .light(LightKind::Directional { direction, irradiance: Rgb::grey(3.0) })
         .film(4, 4)
         .max_edges(2)
         .build();
@@ -164,15 +165,11 @@ fn the_sun_lights_a_plane() {
 /// Glass under an even sky is invisible.
 #[test]
 fn glass_under_an_even_sky_is_invisible() {
-    let clear = BsdfDescription::Dielectric {
-        eta: 1.5,
-        reflectance: Rgb::WHITE,
-        transmittance: Rgb::WHITE,
-    };
+    let clear = BsdfDescription::from(DielectricDescription::clear(1.5));
     let (radiance, rotation) = (Rgb::grey(2.0), glam::DMat3::IDENTITY);
     let scene = Fixture::new(DVec3::new(0.0, 0.0, 1.2), DVec3::ZERO, 50.0)
         .sphere(clear, Rgb::BLACK, [0.0; 3], 0.5)
-        .light(Glow::Environment { radiance, image: None, rotation })
+        .light(LightKind::Environment { radiance, image: None, rotation })
         .film(8, 8)
         .max_edges(48)
         .build();
@@ -241,11 +238,7 @@ fn a_furnace_holds_every_path_length() {
 /// Glass that absorbs nothing is invisible among black walls that all emit the same.
 #[test]
 fn glass_in_an_even_glow_is_invisible() {
-    let clear = BsdfDescription::Dielectric {
-        eta: 1.5,
-        reflectance: Rgb::WHITE,
-        transmittance: Rgb::WHITE,
-    };
+    let clear = BsdfDescription::from(DielectricDescription::clear(1.5));
     let scene = Fixture::new(DVec3::new(0.0, 0.0, 0.9), DVec3::ZERO, 50.0)
         .room(&[BLACK; 6], Rgb::WHITE)
         .sphere(clear, Rgb::BLACK, [0.0, 0.0, 0.0], 0.5)
@@ -284,7 +277,7 @@ fn a_sphere_lights_a_plane() {
 #[test]
 fn a_mirrored_lamp_lights_a_plane() {
     let (radius, height, aside, ceiling) = (0.25, 1.0, 2.0, 2.5);
-    let perfect = BsdfDescription::Mirror { reflectance: Rgb::WHITE };
+    let perfect = BsdfDescription::Mirror(MirrorDescription { reflectance: Rgb::WHITE });
     let scene = sphere_over_plane(radius, height, aside)
         .quad(perfect, Rgb::BLACK, [-9., ceiling, -9.], [18., 0., 0.], [0., 0., 18.])
         .max_edges(3)
@@ -298,11 +291,7 @@ fn a_mirrored_lamp_lights_a_plane() {
 /// Light through a slab at normal incidence, all internal reflections together: `(1-F)/(1+F)`.
 #[test]
 fn a_slab_dims_what_lies_behind() {
-    let clear = |eta| BsdfDescription::Dielectric {
-        eta,
-        reflectance: Rgb::WHITE,
-        transmittance: Rgb::WHITE,
-    };
+    let clear = |eta| BsdfDescription::from(DielectricDescription::clear(eta));
     let scene = Fixture::new(DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO, 0.1)
         .quad(clear(1.5), Rgb::BLACK, [-1., -1., 1.], [2., 0., 0.], [0., 2., 0.])
         .quad(clear(1.5), Rgb::BLACK, [-1., -1., 0.5], [0., 2., 0.], [2., 0., 0.])

@@ -6,11 +6,10 @@
 use common::Rgb;
 use glam::{DVec2, DVec3};
 
-use crate::bsdf::Scatter as _;
 use crate::film::Film;
 use crate::math::{Rng, Stream};
 use crate::parallel;
-use crate::path::{Aim, Numbers, ROW, Strand, Vertex, extend, light_vertex, scatter};
+use crate::path::{CameraSample, Numbers, ROW, Strand, Vertex, extend, light_vertex, scatter};
 use crate::scene::{RayCounts, Scene, Tracer};
 
 /// Edges that every path gets before Russian roulette begins.
@@ -23,6 +22,9 @@ pub struct PathTracer {
     /// One stream a pixel, so that the image does not depend on the number of threads.
     streams: Vec<Rng>,
     samples: u64,
+    /// Samples through points anywhere on the film.
+    scattered: u64,
+    seed: u64,
     rays: RayCounts,
 }
 
@@ -40,6 +42,8 @@ impl PathTracer {
             film: Film::new(camera.width, camera.height),
             streams: (0..pixels).map(|i| Rng::new(seed, Stream::PathTracer, i)).collect(),
             samples: 0,
+            scattered: 0,
+            seed,
             rays: RayCounts::default(),
         }
     }
@@ -71,6 +75,27 @@ impl PathTracer {
         self.samples
     }
 
+    /// Adds `count` samples through points anywhere on the film: less than a sample through every pixel,
+    /// where time allows no more.
+    pub fn scatter(&mut self, scene: &Scene, count: u64) {
+        let scene = Tracer::new(scene);
+        let mut rng = Rng::new(self.seed, Stream::Scattered, self.scattered);
+        for _ in 0..count {
+            let aim = CameraSample::from_numbers(&scene, &mut rng);
+            let radiance = radiance(&scene, &aim, &mut rng);
+            if radiance.is_physical() {
+                self.film.splat(scene.camera().pixel(aim.film), radiance);
+            }
+        }
+        self.rays.add(&scene);
+        self.scattered += count;
+    }
+
+    /// Samples through points anywhere on the film so far.
+    pub fn scattered(&self) -> u64 {
+        self.scattered
+    }
+
     /// Rays cast so far.
     pub fn rays(&self) -> RayCounts {
         self.rays
@@ -79,7 +104,9 @@ impl PathTracer {
     /// The image in radiance of the file's units.
     pub fn image(&self, scene: &Scene) -> Film {
         let mut image = self.film.clone();
-        image.scale(scene.radiance_scale() / self.samples.max(1) as f64);
+        let scattered = self.scattered as f64 / scene.camera().pixel_count() as f64;
+        let samples = self.samples as f64 + scattered;
+        image.scale(scene.radiance_scale() / if samples > 0.0 { samples } else { 1.0 });
         image
     }
 }
@@ -91,13 +118,13 @@ fn sample_pixel(scene: &Tracer<'_>, x: usize, y: usize, rng: &mut Rng) -> Rgb {
         (x as f64 + rng.uniform()) / f64::from(camera.width),
         (y as f64 + rng.uniform()) / f64::from(camera.height),
     );
-    let aim = Aim::through(scene, film, || rng.array());
+    let aim = CameraSample::through(scene, film, || rng.array());
     let radiance = radiance(scene, &aim, rng);
     if radiance.is_physical() { radiance } else { Rgb::BLACK }
 }
 
 /// Radiance that arrives at the lens by the ray `aim`.
-pub(super) fn radiance(scene: &Tracer<'_>, aim: &Aim, numbers: &mut impl Numbers) -> Rgb {
+pub(super) fn radiance(scene: &Tracer<'_>, aim: &CameraSample, numbers: &mut impl Numbers) -> Rgb {
     let mut direction = aim.direction(scene);
     let mut sum = Rgb::BLACK;
     let mut throughput = Rgb::WHITE;

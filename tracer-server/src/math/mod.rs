@@ -2,12 +2,14 @@
 
 mod frame;
 mod rng;
+mod sobol;
 mod sum;
 mod torus;
 mod warp;
 
 pub use frame::Frame;
 pub use rng::{Rng, Stream};
+pub use sobol::{MOST_POINTS, Strata};
 pub use sum::Accumulator;
 pub use torus::TorusStep;
 pub use warp::{

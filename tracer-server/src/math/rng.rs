@@ -17,12 +17,18 @@ pub enum Stream {
     PathTracer = 4,
     /// One block of samples of the bidirectional path tracer.
     Bidirectional = 5,
+    /// The base samples of one replicate.
+    Base = 10,
     /// What `verify` draws on a user's scene.
     Verification = 7,
     /// The census of a scene's light before the chains start.
     Census = 8,
     /// The look at a scene that sets the weights of its strategies.
     Pilot = 11,
+    /// Samples through points anywhere on the film.
+    Scattered = 15,
+    /// One short chain of the look at a scene.
+    Scout = 14,
     /// One epoch of the explorer.
     Explorer = 12,
     /// One fan of the explorer.
@@ -48,6 +54,12 @@ impl Rng {
         key[8..16].copy_from_slice(&(stream as u64).to_le_bytes());
         key[16..].copy_from_slice(&index.to_le_bytes());
         Self(Xoshiro256PlusPlus::from_seed(*blake3::hash(&key).as_bytes()))
+    }
+
+    /// Sixty-four random bits.
+    #[inline]
+    pub fn bits(&mut self) -> u64 {
+        self.0.next_u64()
     }
 
     /// A number in [0, 1) with 53 random bits.

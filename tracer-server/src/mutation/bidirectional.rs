@@ -3,7 +3,7 @@
 
 use super::{MixtureBasis, Mutation, Tuning};
 use crate::math::{Rng, pick, power_of_half};
-use crate::path::{Draft, Failure, Path, Range, resample};
+use crate::path::{Cut, Draft, Failure, Kept, Path, Range, resample};
 use crate::scene::Tracer;
 
 /// Deletes the edges between two kept vertices and replaces them by walks from both sides.
@@ -148,22 +148,21 @@ impl Bidirectional {
         p_range * p_length / sharings(added, replaces_lens) as f64
     }
 
-    fn choose_range(self, x: &Path, rng: &mut Rng) -> Option<(usize, usize)> {
+    fn choose_cut(self, x: &Path, rng: &mut Rng) -> Option<Cut> {
         let (mask, lens) = (self.end_mask(x), x.edge_count());
         let all = (1..=self.most_deleted(x)).map(|edges| (edges, ranges(mask, edges, lens)));
         let weighted = all.filter(|(_, pairs)| *pairs != 0).map(|(edges, pairs)| {
             ((edges, pairs), deletion_weight(edges) * f64::from(pairs.count_ones()))
         });
         let (edges, pairs) = pick(rng.uniform() * self.deletion_total(x), weighted)?;
-        let kept_light = nth_set_bit(pairs, rng.below(pairs.count_ones() as usize));
-        Some((kept_light, kept_light + edges - 1))
+        let light = nth_set_bit(pairs, rng.below(pairs.count_ones() as usize));
+        Some(Cut { light, eye_from: light + edges - 1 })
     }
 
-    fn choose_length(self, x: &Path, ends: (usize, usize), rng: &mut Rng) -> Option<usize> {
-        let (kept_light, from) = ends;
-        let deleted = from + 1 - kept_light;
-        let admissible = self.admissible(x.edge_count(), kept_light, deleted);
-        let u = rng.uniform() * self.addition_total(x.edge_count(), kept_light, deleted);
+    fn choose_length(self, x: &Path, cut: Cut, rng: &mut Rng) -> Option<usize> {
+        let deleted = cut.eye_from + 1 - cut.light;
+        let admissible = self.admissible(x.edge_count(), cut.light, deleted);
+        let u = rng.uniform() * self.addition_total(x.edge_count(), cut.light, deleted);
         pick(u, admissible.map(|added| (added, addition_weight(added.abs_diff(deleted)))))
     }
 }
@@ -189,14 +188,13 @@ impl Mutation for Bidirectional {
         draft: &mut Draft,
         y: &mut Path,
     ) -> Result<Ends, Failure> {
-        let (kept_light, from) = self.choose_range(x, rng).ok_or(Failure::NoSubpath)?;
-        let added =
-            self.choose_length(x, (kept_light, from), rng).ok_or(Failure::LengthOutOfRange)?;
-        let replaces_lens = from > x.edge_count();
+        let cut = self.choose_cut(x, rng).ok_or(Failure::NoSubpath)?;
+        let added = self.choose_length(x, cut, rng).ok_or(Failure::LengthOutOfRange)?;
+        let replaces_lens = cut.eye_from > x.edge_count();
         let from_light = rng.below(sharings(added, replaces_lens));
         let from_eye = added - 1 - from_light;
-        let range = Range { kept_light, kept_from: from, from_light, from_eye };
-        resample(scene, x, range, rng, draft, y)?;
+        resample(scene, x, Range { cut, from_light, from_eye }, rng, draft, y)?;
+        let Cut { light: kept_light, eye_from: from } = cut;
         Ok(Ends { kept_light, from, to: kept_light + added - 1, from_light })
     }
 
@@ -211,8 +209,8 @@ impl Mutation for Bidirectional {
         Ends { from: via.to, to: via.from, ..via }
     }
 
-    fn kept(&self, x: &Path, via: Ends) -> (usize, usize) {
-        (via.kept_light, (x.edge_count() + 1).saturating_sub(via.from))
+    fn kept(&self, x: &Path, via: Ends) -> Kept {
+        Cut { light: via.kept_light, eye_from: via.from }.kept(x.edge_count() + 1)
     }
 }
 
@@ -222,7 +220,7 @@ mod tests {
 
     use super::*;
     use crate::math::Stream;
-    use crate::path::{Aim, BidirectionalSampler};
+    use crate::path::{BidirectionalSampler, CameraSample};
     use crate::scene::fixtures::specular_room;
 
     /// The worked example: `L D E` with a pinhole, an area light and at most seven edges.
@@ -279,9 +277,9 @@ mod tests {
             let total: f64 = expected.iter().sum();
             assert!((total / DRAWS as f64 - 1.0).abs() < 1e-12, "{class}: sums to {total}");
             for _ in 0..DRAWS {
-                let ends = b.choose_range(&x, &mut rng).expect("a range");
-                let added = b.choose_length(&x, ends, &mut rng).expect("a length");
-                let drawn = (ends.0, ends.1, added);
+                let cut = b.choose_cut(&x, &mut rng).expect("a range");
+                let added = b.choose_length(&x, cut, &mut rng).expect("a length");
+                let drawn = (cut.light, cut.eye_from, added);
                 let cell = cells.iter().position(|&c| c == drawn).expect("a feasible choice");
                 observed[cell] += 1;
             }
@@ -296,7 +294,7 @@ mod tests {
         let mut sampler = BidirectionalSampler::new(scene);
         let mut found = None;
         while found.is_none() {
-            let aim = Aim::from_numbers(scene, &mut rng);
+            let aim = CameraSample::from_numbers(scene, &mut rng);
             sampler.sample(scene, aim, &mut rng, |path, _| {
                 if path.class() == class {
                     found = Some(path.clone());

@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_1_PI;
 use super::retrace::{Sizes, repeat, turn};
 use super::{MixtureBasis, Mutation, Parameter, Tuning};
 use crate::math::Rng;
-use crate::path::{Draft, Failure, Path, Splice, extend, open_for_connection};
+use crate::path::{Cut, Draft, Failure, Kept, Path, Splice, extend, open_for_connection};
 use crate::scene::Tracer;
 
 /// Turns the direction of the last chain from the light by a log-uniform angle.
@@ -97,7 +97,8 @@ impl Mutation for CausticPerturbation {
         let (k, start) = (x.edge_count(), chain_start(x));
         let theta = self.angles(x, start).draw(rng);
         let mut direction = turn(x.edges()[start].direction, theta, rng);
-        draft.open(start + 1, k);
+        let cut = Cut { light: start + 1, eye_from: k };
+        draft.open(cut);
         let mut at = x.vertices()[start];
         for j in start + 1..k {
             at = extend(scene, &at, direction)?;
@@ -110,14 +111,7 @@ impl Mutation for CausticPerturbation {
             }
             draft.light.push(at);
         }
-        let splice = Splice {
-            base: x,
-            kept_light: start + 1,
-            light: &draft.light,
-            eye: &[],
-            kept_from: k,
-            film: None,
-        };
+        let splice = Splice { base: x, cut, light: &draft.light, eye: &[], film: None };
         y.connect(scene, &splice)?;
         Ok(Turn { start, theta })
     }
@@ -137,7 +131,7 @@ impl Mutation for CausticPerturbation {
         via
     }
 
-    fn kept(&self, _: &Path, via: Turn) -> (usize, usize) {
-        (via.start + 1, 1)
+    fn kept(&self, _: &Path, via: Turn) -> Kept {
+        Kept { light: via.start + 1, eye: 1 }
     }
 }

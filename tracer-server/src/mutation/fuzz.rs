@@ -5,12 +5,12 @@ use common::Rgb;
 use glam::{DMat3, DVec3};
 
 use super::{KINDS, Mixture, MixtureBasis, StrategyOptions};
-use crate::bsdf::Fresnel;
+use crate::bsdf::{BsdfDescription, ColorInput, Given, MODELS, Named, NumberInput, Value};
 use crate::chain::{Ensemble, EnsembleSettings};
 use crate::math::{Rng, Stream, uniform_sphere};
-use crate::path::{Aim, BidirectionalSampler, Draft, Path};
-use crate::scene::fixtures::{Fixture, MIRROR, lambert};
-use crate::scene::{BsdfDescription, Glow, Scene, Tracer};
+use crate::path::{BidirectionalSampler, CameraSample, Draft, Path};
+use crate::scene::fixtures::{Fixture, lambert};
+use crate::scene::{LightKind, Scene, Tracer};
 
 const SCENES: u64 = 60;
 /// Proposals of each strategy on each scene.
@@ -31,46 +31,79 @@ fn point(rng: &mut Rng) -> [f64; 3] {
     rng.array::<3>().map(|u| 1.8 * u - 0.9)
 }
 
-fn material(rng: &mut Rng) -> BsdfDescription {
-    let roughness = between(rng, 1e-4, 1.0);
-    let eta = between(rng, 0.3, 3.0);
-    let fresnel = match rng.below(3) {
-        0 => Fresnel::Dielectric { eta: 1.0 + eta, tint: color(rng) },
-        1 => Fresnel::Schlick(color(rng)),
-        _ => Fresnel::Conductor { eta: color(rng), k: color(rng) * 5.0, tint: Rgb::WHITE },
-    };
-    let (reflectance, transmittance) = (color(rng), color(rng));
-    match rng.below(7) {
-        0 => MIRROR,
-        1 => BsdfDescription::Dielectric { eta, reflectance, transmittance },
-        2 => BsdfDescription::RoughDielectric {
-            eta,
-            reflectance,
-            transmittance,
-            roughness: roughness.into(),
-        },
-        3 => BsdfDescription::Conductor { fresnel, roughness: roughness.into() },
-        4 => {
-            let roughness = if rng.below(2) == 0 { 0.0 } else { roughness };
-            BsdfDescription::Plastic {
-                diffuse: reflectance.into(),
-                fresnel,
-                roughness,
-                nonlinear: false,
-            }
-        }
-        _ => lambert(reflectance.r, reflectance.g, reflectance.b),
+/// Whatever a model asks for, three times out of four.
+struct Anything<'r> {
+    rng: &'r mut Rng,
+}
+
+impl Anything<'_> {
+    fn given<T>(&mut self, value: impl FnOnce(&mut Rng) -> T) -> Option<T> {
+        (self.rng.below(4) > 0).then(|| value(self.rng))
     }
 }
 
-fn glow(rng: &mut Rng) -> Glow {
+impl Given for Anything<'_> {
+    type Error = String;
+
+    fn color(&mut self, _: &'static str) -> Result<Option<Rgb>, String> {
+        Ok(self.given(color))
+    }
+
+    fn color_input(&mut self, _: &'static str) -> Result<Option<ColorInput>, String> {
+        Ok(self.given(|rng| color(rng).into()))
+    }
+
+    fn number(&mut self, _: &'static str) -> Result<Option<f64>, String> {
+        Ok(self.given(|rng| between(rng, 1e-4, 3.0)))
+    }
+
+    fn number_input(&mut self, _: &'static str) -> Result<Option<NumberInput>, String> {
+        Ok(self.given(|rng| between(rng, 1e-4, 1.0).into()))
+    }
+
+    fn number_or_name(&mut self, name: &'static str) -> Result<Option<Named>, String> {
+        Ok(self.number(name)?.map(Named::Number))
+    }
+
+    fn word(&mut self, _: &'static str) -> Result<Option<String>, String> {
+        Ok(None)
+    }
+
+    fn flag(&mut self, _: &'static str) -> Result<bool, String> {
+        Ok(self.rng.below(2) == 0)
+    }
+
+    fn error(&self, name: &'static str, message: &str) -> String {
+        format!("{name}: {message}")
+    }
+
+    fn warn(&mut self, _: &str) {}
+}
+
+/// Any model with any parameters.
+fn material(rng: &mut Rng) -> BsdfDescription {
+    loop {
+        let kind = MODELS[rng.below(MODELS.len())];
+        // Not everything goes together.
+        if let Some(Ok(mut model)) = BsdfDescription::read(kind.name, &mut Anything { rng }) {
+            model.parameters(&mut |_, value| {
+                if let Value::Number(number, range) = value {
+                    *number = number.clamp(range.low, range.high);
+                }
+            });
+            return model;
+        }
+    }
+}
+
+fn kind(rng: &mut Rng) -> LightKind {
     let (position, intensity) = (DVec3::from(point(rng)), color(rng) * between(rng, 0.1, 10.0));
     let direction = uniform_sphere(rng.uniform(), rng.uniform());
     match rng.below(4) {
-        0 => Glow::Point { position, intensity },
-        1 => Glow::Spot { position, direction, intensity, cutoff: 40.0, beam: 30.0 },
-        2 => Glow::Directional { direction, irradiance: intensity },
-        _ => Glow::Environment {
+        0 => LightKind::Point { position, intensity },
+        1 => LightKind::Spot { position, direction, intensity, cutoff: 40.0, beam: 30.0 },
+        2 => LightKind::Directional { direction, irradiance: intensity },
+        _ => LightKind::Environment {
             radiance: intensity,
             image: None,
             rotation: DMat3::from_rotation_y(rng.uniform()),
@@ -95,10 +128,13 @@ fn any_scene(rng: &mut Rng) -> Scene {
         fixture = fixture.quad(material(rng), Rgb::BLACK, point(rng), u, v);
     }
     for _ in 0..rng.below(3) {
-        fixture = fixture.light(glow(rng));
+        fixture = fixture.light(kind(rng));
     }
-    let skies =
-        fixture.description.lights.iter().filter(|l| matches!(l.glow, Glow::Environment { .. }));
+    let skies = fixture
+        .description
+        .lights
+        .iter()
+        .filter(|l| matches!(l.kind, LightKind::Environment { .. }));
     if skies.count() > 1 {
         fixture.description.lights.pop();
     }
@@ -125,7 +161,7 @@ fn any_path(scene: &Tracer<'_>, rng: &mut Rng) -> Option<Path> {
     let (mut chosen, mut sum) = (None, 0.0);
     let mut choice = Rng::new(5, Stream::Laboratory, 1);
     for _ in 0..SAMPLES {
-        let aim = Aim::from_numbers(scene, rng);
+        let aim = CameraSample::from_numbers(scene, rng);
         sampler.sample(scene, aim, rng, |path, weight| {
             sum += weight;
             if choice.uniform() * sum < weight {
@@ -183,7 +219,6 @@ fn random_scenes_make_pictures() {
             threads: 1,
             strategies: StrategyOptions::default(),
             bootstrap_samples: 1 << 11,
-            precision: 0.003,
         };
         let mut ensemble = Ensemble::new(&scene, &settings, |_| ());
         ensemble.advance(&scene, 300, None);

@@ -3,7 +3,7 @@
 
 use super::{MixtureBasis, Mutation, Tuning};
 use crate::math::{Rng, pick};
-use crate::path::{Draft, Failure, Path, Range, resample};
+use crate::path::{Draft, Failure, Kept, Path, Range, resample};
 use crate::scene::Tracer;
 
 /// Starts anew with lengths drawn from a fixed distribution.
@@ -78,8 +78,8 @@ impl Mutation for Independent {
 
     fn reverse(&self, (): ()) {}
 
-    fn kept(&self, _: &Path, (): ()) -> (usize, usize) {
-        (0, usize::from(!self.aperture))
+    fn kept(&self, _: &Path, (): ()) -> Kept {
+        Kept { light: 0, eye: usize::from(!self.aperture) }
     }
 }
 

@@ -6,32 +6,29 @@
 
 use super::mutants::{self, Mutant};
 use super::{
-    Bidirectional, CausticPerturbation, Independent, LensPerturbation, LensSubpath, MultiChain,
-    Mutation, Primary, Proposal, Sizes, inspect, propose,
+    Bidirectional, CausticPerturbation, Independent, KINDS, Kind, LensPerturbation, LensSubpath,
+    Mixture, MixtureBasis, MultiChain, Mutation, Primary, Proposal, STRATEGY_COUNT, Sizes,
+    Strategy, StrategyOptions, propose,
 };
 use crate::math::{Rng, Stream};
-use crate::path::{Aim, BidirectionalSampler, Draft, Failure, Path};
+use crate::path::{BidirectionalSampler, CameraSample, Draft, Failure, Path};
 use crate::scene::fixtures::{
     Fixture, bumpy_room, coated_room, diffuse_room, every_light, floor_through_glass,
     saturated_room, slab_over_floor, specular_room, wall_and_lamp_in_a_pane, wall_in_a_pane,
 };
 use crate::scene::{Scene, Tracer};
-use crate::verify::invariance::{Propose, Run, Test};
+use crate::target::Target;
+use crate::target::laws::targets;
+use crate::verify::invariance::{Propose, Run, Test, Walk, by_itself};
 use crate::verify::judge::{Finding, Law, Subject, Verdict, examine};
 
 /// Findings among which the chance of a false alarm is shared.
 const FAMILY: usize = 40;
 
 /// Puts a way of proposing to the test on `samples` bidirectional samples, as `verify` does.
-fn judged(
-    name: &str,
-    scene: &Scene,
-    propose: &Propose<'_>,
-    test: Test,
-    samples: u64,
-) -> Vec<Finding> {
+fn judged(name: &str, scene: &Scene, walk: Walk<'_>, test: Test, samples: u64) -> Vec<Finding> {
     let run = Run { test, samples, seed: 20, number: 0, threads: 2 };
-    let subject = Subject { name, propose, family: FAMILY };
+    let subject = Subject { name, walk, family: FAMILY };
     let laws = [(Law::Invariance, "invariance"), (Law::Flow, "flow")];
     // Single steps carry no flow.
     let laws = if matches!(test, Test::Steps(_)) { &laws[..1] } else { &laws };
@@ -52,29 +49,37 @@ fn strategy<M: Mutation>(
 }
 
 fn assert_lawful(name: &str, scene: &Scene, propose: &Propose<'_>) {
-    assert_lawful_by(name, scene, propose, (20_000, 15));
+    assert_lawful_by(name, scene, whole(propose), 20_000, 15);
+}
+
+/// A way of proposing in a chain that visits all light as it is.
+fn whole<'a>(propose: &'a Propose<'a>) -> Walk<'a> {
+    Walk { propose, target: &Target::Whole }
 }
 
 /// With `samples` bidirectional samples for proposals, and three times as many for steps; at least
 /// `least` functions must be exercised.
-fn assert_lawful_by(
-    name: &str,
-    scene: &Scene,
-    propose: &Propose<'_>,
-    (samples, least): (u64, usize),
-) {
+fn assert_lawful_by(name: &str, scene: &Scene, walk: Walk<'_>, samples: u64, least: usize) {
+    let functions = judged_lawful(name, scene, walk, samples);
+    assert!(functions >= least, "{name}: only {functions} functions were exercised");
+}
+
+/// That no law is broken; returns how many functions were judged by.
+fn judged_lawful(name: &str, scene: &Scene, walk: Walk<'_>, samples: u64) -> usize {
+    let mut functions = usize::MAX;
     for (test, samples) in [(Test::Steps(3), 3 * samples), (Test::Proposals(5), samples)] {
-        let findings = judged(name, scene, propose, test, samples);
-        assert!(findings[0].judged >= least, "{findings:?}: too few functions were exercised");
+        let findings = judged(name, scene, walk, test, samples);
+        functions = functions.min(findings[0].judged);
         for finding in findings {
             assert_ne!(finding.verdict, Verdict::Fail, "{test:?}: {finding:?}");
         }
     }
+    functions
 }
 
 fn independent(scene: &Scene) -> Independent {
     let aperture = scene.camera().has_aperture();
-    Independent::new(&[0.0, 1.0, 4.0, 3.0, 2.0, 1.0, 1.0], scene.max_edges(), aperture)
+    Independent::new(&ENERGY, scene.max_edges(), aperture)
 }
 
 fn bidirectional(scene: &Scene) -> Bidirectional {
@@ -85,24 +90,43 @@ fn lens_subpath(scene: &Scene) -> LensSubpath {
     LensSubpath { max_edges: scene.max_edges(), aperture: scene.camera().has_aperture() }
 }
 
-/// Every strategy with every light and lens.
+/// Every strategy that a scene may have, with sizes that matter to a room.
+fn strategies(scene: &Scene) -> Mixture {
+    let mut options = StrategyOptions::default();
+    let angles = Sizes { min: 1e-3, max: 0.5 };
+    options.set_parameter("multi-chain", "angle", &[angles.min, angles.max]).expect("it has one");
+    Mixture::new(&options, &MixtureBasis::of(scene, &ENERGY))
+}
+
+/// What paths of so many edges carry, about.
+const ENERGY: [f64; 7] = [0.0, 1.0, 4.0, 3.0, 2.0, 1.0, 1.0];
+
+/// Every strategy with every light and lens. One that finds little to do in some of the scenes finds
+/// enough in others.
 #[test]
 fn every_light_and_lens_is_lawful() {
+    let mut exercised = [0; STRATEGY_COUNT];
     for (name, fixture) in every_light() {
         let scene = fixture.build();
-        assert_lawful_here(name, &scene, &bidirectional(&scene));
-        assert_lawful_here(name, &scene, &independent(&scene));
-        assert_lawful_here(name, &scene, &LensPerturbation::new(scene.camera()));
-        assert_lawful_here(name, &scene, &lens_subpath(&scene));
-        assert_lawful_here(name, &scene, &CausticPerturbation::new(scene.camera()));
-        let aperture = scene.camera().has_aperture();
-        assert_lawful_here(name, &scene, &Primary { aperture, ..Primary::default() });
+        let mixture = strategies(&scene);
+        for strategy in (0..mixture.len()).map(|index| mixture.get(index)) {
+            let propose = by_itself(strategy);
+            let title = format!("{}, {name}", strategy.name());
+            let functions = judged_lawful(&title, &scene, whole(&propose), 6_000);
+            if functions >= 5 && checked_moves(&scene, strategy) > 200 {
+                exercised[kind_of(strategy)] += 1;
+            }
+        }
+    }
+    for (kind, exercised) in KINDS.iter().zip(exercised) {
+        assert!(exercised >= 2, "{} was put to the test in {exercised} scenes", kind.name);
     }
 }
 
-fn assert_lawful_here<M: Mutation>(name: &str, scene: &Scene, mutation: &M) {
-    assert_lawful_by(&format!("{}, {name}", M::NAME), scene, &strategy(mutation), (6_000, 5));
-    check_moves(scene, mutation);
+/// The strategy's place in the table of kinds.
+fn kind_of(strategy: &Strategy) -> usize {
+    let of_kind = |kind: &Kind| kind.name == strategy.name();
+    KINDS.iter().position(of_kind).expect("every strategy is of some kind")
 }
 
 #[test]
@@ -202,17 +226,54 @@ fn wide_multi_chain(scene: &Scene) -> MultiChain {
     MultiChain { angle: Sizes { min: 1e-3, max: 0.5 }, ..MultiChain::new(scene.camera()) }
 }
 
-/// A wrong strategy must be found, by a margin.
-#[expect(clippy::print_stdout, reason = "the table of what was found, with --nocapture")]
+/// Every strategy on everything that chains may visit.
+#[test]
+fn every_target_is_left_alone() {
+    let scene = specular_room().build();
+    let mixture = strategies(&scene);
+    assert_eq!(mixture.len(), STRATEGY_COUNT, "the room has something for everyone");
+    for strategy in (0..mixture.len()).map(|index| mixture.get(index)) {
+        let propose = by_itself(strategy);
+        for target in &targets(&scene) {
+            let name = format!("{}, {}", strategy.name(), target.name());
+            assert_lawful_by(&name, &scene, Walk { propose: &propose, target }, 8_000, 5);
+        }
+    }
+}
+
+/// A chain that forgets how much more often the proposal is to be visited.
+#[test]
+fn a_forgotten_target_is_found() {
+    let scene = specular_room().build();
+    for target in &targets(&scene) {
+        let right = bidirectional(&scene);
+        let wrong: Box<Propose<'_>> = Box::new(|scene, x, rng, draft, y| {
+            let proposal = propose(&right, scene, x, rng, draft, y)?;
+            // The test multiplies by this.
+            let ratio = proposal.ratio / target.importance(y).rho;
+            Ok(Proposal { ratio, ..proposal })
+        });
+        let name = format!("{}: rho of the proposal left out", target.name());
+        assert_found_on(&name, &scene, Walk { propose: &wrong, target }, Test::Steps(3), 30_000);
+    }
+}
+
+/// A wrong strategy must be found on every target, by a margin.
 fn assert_found(mutant: &Mutant<'_>, scene: &Scene, test: Test, samples: u64) {
-    let findings = judged(mutant.name, scene, &mutant.propose, test, samples);
+    for target in &[vec![Target::Whole], targets(scene)].concat() {
+        let name = format!("{}, {}", mutant.name, target.name());
+        let walk = Walk { propose: &mutant.propose, target };
+        assert_found_on(&name, scene, walk, test, samples);
+    }
+}
+
+#[expect(clippy::print_stdout, reason = "the table of what was found, with --nocapture")]
+fn assert_found_on(name: &str, scene: &Scene, walk: Walk<'_>, test: Test, samples: u64) {
+    let findings = judged(name, scene, walk, test, samples);
     let broken: Vec<_> = findings.iter().filter(|f| f.verdict == Verdict::Fail).collect();
     let worst = broken.iter().map(|f| f.worst).fold(0.0, f64::max);
-    println!(
-        "{:60} {worst:6.1} of {:4} at {}",
-        mutant.name, findings[0].judged, findings[0].samples
-    );
-    assert!(worst > 6.0, "{} was not found: {findings:?}", mutant.name);
+    println!("{name:80} {worst:6.1} of {:4} at {}", findings[0].judged, findings[0].samples);
+    assert!(worst > 6.0, "{name} was not found: {findings:?}");
 }
 
 #[test]
@@ -280,7 +341,7 @@ fn wrong_multi_chain_perturbations_are_found() {
 fn wrong_primary_mutations_are_found() {
     let (room, glass) = (specular_room().build(), floor_through_glass().build());
     for mutant in mutants::of_primary(Primary::default()) {
-        let (scene, samples) = if mutant.needs_glass { (&glass, 100_000) } else { (&room, 30_000) };
+        let (scene, samples) = if mutant.needs_glass { (&glass, 100_000) } else { (&room, 60_000) };
         assert_found(&mutant, scene, Test::Steps(3), samples);
     }
 }
@@ -289,44 +350,45 @@ fn wrong_primary_mutations_are_found() {
 /// what a path built from scratch would hold.
 #[test]
 fn proposals_are_reversible_and_their_caches_are_fresh() {
-    let scene = specular_room().build();
-    let b = bidirectional(&scene);
-    let (i, l) = (independent(&scene), LensPerturbation::new(scene.camera()));
-    check_moves(&scene, &b);
-    check_moves(&scene, &i);
-    check_moves(&scene, &l);
-    check_moves(&scene, &lens_subpath(&scene));
-    check_moves(&scene, &CausticPerturbation::new(scene.camera()));
-    check_moves(&scene, &Primary::default());
-    let coated = coated_room().build();
-    check_moves(&coated, &lens_subpath(&coated));
-    check_moves(&slab_over_floor(true).build(), &MultiChain::new(scene.camera()));
+    let mut checked = [0; STRATEGY_COUNT];
+    for fixture in [specular_room(), coated_room(), slab_over_floor(true)] {
+        let scene = fixture.build();
+        let mixture = strategies(&scene);
+        for strategy in (0..mixture.len()).map(|index| mixture.get(index)) {
+            checked[kind_of(strategy)] += checked_moves(&scene, strategy);
+        }
+    }
+    for (kind, checked) in KINDS.iter().zip(checked) {
+        assert!(checked > 300, "{}: only {checked} proposals came about", kind.name);
+    }
 }
 
-fn check_moves<M: Mutation>(scene: &Scene, mutation: &M) {
+/// Looks closely at moves from many paths; returns how many there were.
+fn checked_moves(scene: &Scene, strategy: &Strategy) -> usize {
     let scene = Tracer::new(scene);
     let mut sampler = BidirectionalSampler::new(&scene);
     let (mut draft, mut x, mut y) = (Draft::default(), Path::default(), Path::default());
     let mut rng = Rng::new(3, Stream::Laboratory, 0);
+    let name = strategy.name();
     let mut checked = 0;
     for _ in 0..3000 {
-        let aim = Aim::from_numbers(&scene, &mut rng);
+        let aim = CameraSample::from_numbers(&scene, &mut rng);
         x.clone_from(&Path::default());
         sampler.sample(&scene, aim, &mut rng, |path, _| x.clone_from(path));
-        if x.vertices().is_empty() || !mutation.applicable(&x) {
+        if x.vertices().is_empty() || !strategy.applicable(&x) {
             continue;
         }
-        let Ok(seen) = inspect(mutation, &scene, &x, &mut rng, &mut draft, &mut y) else {
+        let Ok(seen) = strategy.inspect(&scene, &x, &mut rng, &mut draft, &mut y) else {
             continue;
         };
-        assert!(seen.applies_back, "{}: the way back is closed", M::NAME);
-        assert_eq!(seen.flaw, None, "{}: the proposal is sound", M::NAME);
+        assert!(seen.applies_back, "{name}: the way back is closed");
+        assert_eq!(seen.flaw, None, "{name}: the proposal is sound");
         // A move that could not be undone has the ratio zero, and is rejected.
         if seen.forth != 0.0 {
             let product = seen.forth * seen.back;
-            assert!((product - 1.0).abs() < 1e-9, "{}: {seen:?}", M::NAME);
+            assert!((product - 1.0).abs() < 1e-9, "{name}: {seen:?}");
             checked += 1;
         }
     }
-    assert!(checked > 200, "{}: only {checked} proposals came about", M::NAME);
+    checked
 }

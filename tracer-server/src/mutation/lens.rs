@@ -3,10 +3,10 @@
 
 use common::Camera;
 
-use super::retrace::{Sizes, displace, from_lens, walk_pdf};
+use super::retrace::{LensWalk, Sizes, displace, from_lens, walk_pdf};
 use super::{MixtureBasis, Mutation, Parameter, Tuning};
 use crate::math::Rng;
-use crate::path::{Draft, Failure, Path};
+use crate::path::{Draft, Failure, Kept, Path};
 use crate::scene::Tracer;
 
 /// Displaces the film point by a log-uniform radius in a uniform direction.
@@ -52,7 +52,7 @@ impl Mutation for LensPerturbation {
     ) -> Result<usize, Failure> {
         let d = x.first_diffuse_from_eye();
         let film = displace(scene.camera(), x.film(), self.radius.draw(rng), rng);
-        from_lens(scene, x, (film, d), draft, y, |direction| direction)?;
+        from_lens(scene, x, LensWalk { film, end: d }, draft, y, |direction| direction)?;
         Ok(d)
     }
 
@@ -67,7 +67,7 @@ impl Mutation for LensPerturbation {
         d
     }
 
-    fn kept(&self, _: &Path, d: usize) -> (usize, usize) {
-        (d, 1)
+    fn kept(&self, _: &Path, d: usize) -> Kept {
+        Kept { light: d, eye: 1 }
     }
 }

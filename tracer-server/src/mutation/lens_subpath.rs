@@ -5,10 +5,11 @@ use common::Event;
 use glam::{DVec2, DVec3};
 
 use super::{MixtureBasis, Mutation, Tuning};
-use crate::bsdf::{Local, Scatter as _};
+use crate::bsdf::Local;
 use crate::math::Rng;
 use crate::path::{
-    Aim, Draft, Failure, Path, Splice, Vertex, extend, open_for_connection, scatter,
+    CameraSample, Cut, Draft, Failure, Kept, Path, Splice, Vertex, extend, open_for_connection,
+    scatter,
 };
 use crate::scene::Tracer;
 
@@ -63,7 +64,7 @@ fn sent_on<'a>(
     let possible = local.bsdf().has_dirac_lobe();
     let events = [Event::Reflect, Event::Transmit].into_iter().filter(move |_| possible);
     events.filter_map(move |event| {
-        let onward = local.follow(back, event)?;
+        let onward = local.specular_direction(back, event)?;
         Some((event, onward, local.evaluate(onward, back, event)?.eye_pdf))
     })
 }
@@ -112,13 +113,14 @@ impl Mutation for LensSubpath {
     ) -> Result<Fresh, Failure> {
         let d = x.first_diffuse_from_eye();
         let film = Self::film_point(x.film(), draft, rng);
-        draft.open(d, x.edge_count() + usize::from(self.aperture));
+        let cut = Cut { light: d, eye_from: x.edge_count() + usize::from(self.aperture) };
+        draft.open(cut);
         let aim = if self.aperture {
-            let aim = Aim::through(scene, film, || rng.array());
+            let aim = CameraSample::through(scene, film, || rng.array());
             draft.eye.push(aim.lens);
             aim
         } else {
-            Aim { film, lens: x.vertices()[x.edge_count()] }
+            CameraSample { film, lens: x.vertices()[x.edge_count()] }
         };
         let (mut at, mut direction) = (aim.lens, aim.direction(scene));
         for edges in d + 1.. {
@@ -144,14 +146,7 @@ impl Mutation for LensSubpath {
         }
         let stopped = stopping(scene, &at, -direction);
         let stopped_before = stopping(scene, &x.vertices()[d], x.edges()[d].direction);
-        let splice = Splice {
-            base: x,
-            kept_light: d,
-            light: &[],
-            eye: &draft.eye,
-            kept_from: x.edge_count() + usize::from(self.aperture),
-            film: Some(film),
-        };
+        let splice = Splice { base: x, cut, light: &[], eye: &draft.eye, film: Some(film) };
         y.connect(scene, &splice)?;
         Ok(Fresh { diffuse: d, stopped, stopped_before })
     }
@@ -165,7 +160,7 @@ impl Mutation for LensSubpath {
         Fresh { stopped: via.stopped_before, stopped_before: via.stopped, ..via }
     }
 
-    fn kept(&self, _: &Path, via: Fresh) -> (usize, usize) {
-        (via.diffuse, usize::from(!self.aperture))
+    fn kept(&self, _: &Path, via: Fresh) -> Kept {
+        Kept { light: via.diffuse, eye: usize::from(!self.aperture) }
     }
 }

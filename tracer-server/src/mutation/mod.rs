@@ -2,7 +2,7 @@
 //!
 //! To add one: write its file with an `impl Mutation`, declare the module, and add a line to the
 //! list in `strategies!` below: weights, options, tables and checks follow from it.
-//! `docs/ADD_A_MUTATION.md` walks through it.
+//! `docs/EXTEND.md` walks through it.
 
 mod bidirectional;
 mod caustic;
@@ -25,7 +25,7 @@ mod mutants;
 use std::fmt::Debug;
 
 use crate::math::Rng;
-use crate::path::{Draft, Failure, Path};
+use crate::path::{Draft, Failure, Kept, Path};
 use crate::scene::{SceneFeatures, Tracer};
 
 pub use bidirectional::{Bidirectional, Ends};
@@ -90,8 +90,8 @@ pub trait Mutation: Debug + Send + Sync {
     /// The choices by which the opposite move is made.
     fn reverse(&self, via: Self::Move) -> Self::Move;
 
-    /// Vertices that `x` and the proposal share, from the light end and from the lens end.
-    fn kept(&self, x: &Path, via: Self::Move) -> (usize, usize);
+    /// What `x` and the proposal have in common.
+    fn kept(&self, x: &Path, via: Self::Move) -> Kept;
 }
 
 /// A drawn proposal.
@@ -103,18 +103,16 @@ pub struct Proposal {
     pub forward: f64,
     /// `Q(x | y)`.
     pub backward: f64,
-    /// Vertices shared with the current path, from the light end.
-    pub kept_light: usize,
-    /// Vertices shared with the current path, from the lens end.
-    pub kept_eye: usize,
+    /// What it has in common with the current path.
+    pub kept: Kept,
 }
 
-/// Vertices that `x` and the proposal share, from the light end and from the lens end, as they are
-/// drawn: a light infinitely far away moves with the vertex that it shines on.
+/// What `x` and the proposal have in common as they are drawn: a light infinitely far away moves with
+/// the vertex that it shines on.
 #[inline]
-fn shared<M: Mutation>(mutation: &M, x: &Path, via: M::Move) -> (usize, usize) {
-    let (light, eye) = mutation.kept(x, via);
-    (if light == 1 && x.is_lit_from_afar() { 0 } else { light }, eye)
+fn shared<M: Mutation>(mutation: &M, x: &Path, via: M::Move) -> Kept {
+    let kept = mutation.kept(x, via);
+    if kept.light == 1 && x.is_lit_from_afar() { Kept { light: 0, ..kept } } else { kept }
 }
 
 /// Proposes by `mutation` and evaluates both directions.
@@ -130,8 +128,8 @@ pub fn propose<M: Mutation>(
     let via = mutation.propose(scene, x, rng, draft, y)?;
     let backward = mutation.transition(y, x, mutation.reverse(via));
     let forward = mutation.transition(x, y, via);
-    let (kept_light, kept_eye) = shared(mutation, x, via);
-    Ok(Proposal { ratio: backward / forward, forward, backward, kept_light, kept_eye })
+    let kept = shared(mutation, x, via);
+    Ok(Proposal { ratio: backward / forward, forward, backward, kept })
 }
 
 /// One move and its reverse, looked at closely.
@@ -170,7 +168,7 @@ pub fn inspect<M: Mutation>(
     let forth = mutation.transition(y, x, reverse) / mutation.transition(x, y, via);
     let again = mutation.reverse(reverse);
     let back = mutation.transition(x, y, again) / mutation.transition(y, x, reverse);
-    let (light, eye) = shared(mutation, x, via);
+    let Kept { light, eye } = shared(mutation, x, via);
     let (xv, yv) = (x.vertices(), y.vertices());
     let same = |from_x: Option<usize>, from_y: Option<usize>| match (from_x, from_y) {
         (Some(a), Some(b)) => xv.get(a..) == yv.get(b..),

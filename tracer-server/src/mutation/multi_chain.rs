@@ -3,10 +3,10 @@
 
 use common::Camera;
 
-use super::retrace::{Sizes, displace, from_lens, turn, walk_pdf};
+use super::retrace::{LensWalk, Sizes, displace, from_lens, turn, walk_pdf};
 use super::{Form, MixtureBasis, Mutation, Parameter, Tuning};
 use crate::math::Rng;
-use crate::path::{Draft, Failure, Path};
+use crate::path::{Draft, Failure, Kept, Path};
 use crate::scene::{SceneFeatures, Tracer};
 
 /// Displaces the film point, and turns the direction in which every further chain leaves.
@@ -79,7 +79,7 @@ impl Mutation for MultiChain {
     ) -> Result<usize, Failure> {
         let end = last_chain_end(x);
         let film = displace(scene.camera(), x.film(), self.radius.draw(rng), rng);
-        from_lens(scene, x, (film, end), draft, y, |direction| {
+        from_lens(scene, x, LensWalk { film, end }, draft, y, |direction| {
             turn(direction, self.angle.draw(rng), rng)
         })?;
         Ok(end)
@@ -95,7 +95,7 @@ impl Mutation for MultiChain {
         end
     }
 
-    fn kept(&self, _: &Path, end: usize) -> (usize, usize) {
-        (end, 1)
+    fn kept(&self, _: &Path, end: usize) -> Kept {
+        Kept { light: end, eye: 1 }
     }
 }

@@ -3,13 +3,14 @@
 use glam::DVec2;
 
 use super::caustic::chain_pdf;
-use super::retrace::{displace, from_lens, walk_pdf};
+use super::primary::Recorded;
+use super::retrace::{LensWalk, displace, from_lens, walk_pdf};
 use super::{
     Bidirectional, CausticPerturbation, Ends, Fresh, Independent, LensPerturbation, LensSubpath,
     MultiChain, Mutation, Primary, Proposal, Sizes, propose,
 };
 use crate::math::{Rng, TorusStep};
-use crate::path::{Draft, Failure, Path, Strand, Tape};
+use crate::path::{Draft, Failure, Kept, Path, Strand, Tape};
 use crate::scene::Tracer;
 use crate::verify::invariance::Propose;
 
@@ -46,7 +47,7 @@ fn misjudged<M: Mutation>(
     }
     let via = mutation.propose(scene, x, rng, draft, y)?;
     let ratio = transition(y, x, mutation.reverse(via)) / transition(x, y, via);
-    Ok(Proposal { ratio, forward: 1.0, backward: ratio, kept_light: 0, kept_eye: 1 })
+    Ok(Proposal { ratio, forward: 1.0, backward: ratio, kept: Kept { light: 0, eye: 1 } })
 }
 
 /// Draws again until a proposal comes about.
@@ -133,9 +134,9 @@ pub(super) fn of_lens<'a>(right: LensPerturbation) -> Vec<Mutant<'a>> {
             return Err(Failure::NoSubpath);
         }
         let d = x.first_diffuse_from_eye();
-        from_lens(scene, x, (film, d), draft, y, |direction| direction)?;
+        from_lens(scene, x, LensWalk { film, end: d }, draft, y, |direction| direction)?;
         let ratio = right.transition(y, x, d) / right.transition(x, y, d);
-        Ok(Proposal { ratio, forward: 1.0, backward: ratio, kept_light: d, kept_eye: 1 })
+        Ok(Proposal { ratio, forward: 1.0, backward: ratio, kept: Kept { light: d, eye: 1 } })
     }
     let mut events = mutant("lens: event probabilities divided out", move |args| {
         misjudged(&right, args, |x, y, d| right.transition(x, y, d) * walk_pdf(y, d))
@@ -245,9 +246,15 @@ pub(super) fn of_primary<'a>(right: Primary) -> Vec<Mutant<'a>> {
         let mut tape = Tape::default();
         tape.record(scene, x, light, rng).ok_or(Failure::NoSubpath)?;
         spoil(x, &mut tape);
-        right.rebuild(scene, (x, light, &tape), rng, draft, y)?;
+        let recorded = Recorded { path: x, light, tape: &tape };
+        right.rebuild(scene, recorded, rng, draft, y)?;
         let (forward, backward) = (1.0 / x.density_sum(), 1.0 / y.density_sum());
-        Ok(Proposal { ratio: backward / forward, forward, backward, kept_light: 0, kept_eye: 1 })
+        Ok(Proposal {
+            ratio: backward / forward,
+            forward,
+            backward,
+            kept: Kept { light: 0, eye: 1 },
+        })
     }
     let mut event = mutant("primary: the choice of the event is not inverted", move |args| {
         spoilt(right, args, |x, tape| {
@@ -277,14 +284,14 @@ pub(super) fn of_primary<'a>(right: Primary) -> Vec<Mutant<'a>> {
             let light = splits.clone().nth(nth).ok_or(Failure::NoSubpath)?;
             let mut tape = Tape::default();
             tape.record(scene, x, light, rng).ok_or(Failure::NoSubpath)?;
-            right.rebuild(scene, (x, light, &tape), rng, draft, y)?;
+            let recorded = Recorded { path: x, light, tape: &tape };
+            right.rebuild(scene, recorded, rng, draft, y)?;
             let (forward, backward) = (1.0 / x.density_sum(), 1.0 / y.density_sum());
             Ok(Proposal {
                 ratio: backward / forward,
                 forward,
                 backward,
-                kept_light: 0,
-                kept_eye: 1,
+                kept: Kept { light: 0, eye: 1 },
             })
         }),
         mutant("primary: a direction is not inverted", move |args| {

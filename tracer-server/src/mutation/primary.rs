@@ -6,7 +6,7 @@
 
 use super::{Form, MixtureBasis, Mutation, Parameter, Tuning};
 use crate::math::{Rng, TorusStep, pick};
-use crate::path::{Draft, Failure, Numbers, Path, Range, Strand, Tape, resample};
+use crate::path::{Draft, Failure, Kept, Numbers, Path, Range, Strand, Tape, resample};
 use crate::scene::Tracer;
 
 /// Perturbs the numbers behind a path, all at once.
@@ -47,6 +47,17 @@ impl Numbers for Moved<'_> {
     }
 }
 
+/// A path with the numbers that are behind it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Recorded<'a> {
+    /// The path.
+    pub(super) path: &'a Path,
+    /// How many of its vertices the walk from the light is meant to have made.
+    pub(super) light: usize,
+    /// The numbers that both walks are meant to have used.
+    pub(super) tape: &'a Tape,
+}
+
 impl Primary {
     /// A number of light vertices, with the probability that bidirectional sampling would have
     /// made `x` by this split: `(1 / lum C_i) / S`.
@@ -60,11 +71,12 @@ impl Primary {
     pub(super) fn rebuild(
         self,
         scene: &Tracer<'_>,
-        (x, light, tape): (&Path, usize, &Tape),
+        of: Recorded<'_>,
         rng: &mut Rng,
         draft: &mut Draft,
         y: &mut Path,
     ) -> Result<(), Failure> {
+        let Recorded { path: x, light, tape } = of;
         let k = x.edge_count();
         let range = Range::whole(k, light, k - light, self.aperture);
         let step = (rng.uniform() >= self.fresh).then_some(self.step);
@@ -119,7 +131,7 @@ impl Mutation for Primary {
         let light = Self::choose_split(x, rng);
         let mut tape = Tape::default();
         tape.record(scene, x, light, rng).ok_or(Failure::NoSubpath)?;
-        self.rebuild(scene, (x, light, &tape), rng, draft, y)?;
+        self.rebuild(scene, Recorded { path: x, light, tape: &tape }, rng, draft, y)?;
         Ok(light)
     }
 
@@ -134,7 +146,7 @@ impl Mutation for Primary {
         light
     }
 
-    fn kept(&self, _: &Path, _: usize) -> (usize, usize) {
-        (0, usize::from(!self.aperture))
+    fn kept(&self, _: &Path, _: usize) -> Kept {
+        Kept { light: 0, eye: usize::from(!self.aperture) }
     }
 }

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use crate::math::{Frame, Rng, log_uniform};
 use crate::path::{
-    Draft, Failure, Path, Splice, Vertex, end_on_light, extend, open_for_connection,
+    Cut, Draft, Failure, Path, Splice, Vertex, end_on_light, extend, open_for_connection,
 };
 use crate::scene::Tracer;
 
@@ -68,9 +68,18 @@ pub(super) fn repeat(
         return Err(Failure::LeftScene);
     }
     let local = scene.local(&at.anchor(), at.material);
-    let onward = local.follow(-direction, old.event).ok_or(Failure::KindChanged)?;
+    let onward = local.specular_direction(-direction, old.event).ok_or(Failure::KindChanged)?;
     at.set_event(old.event);
     Ok(onward)
+}
+
+/// A walk from the lens.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LensWalk {
+    /// The film point that it goes through.
+    pub(super) film: DVec2,
+    /// Index of the vertex that it goes down to.
+    pub(super) end: usize,
 }
 
 /// Makes `y` of `x` by a walk from the lens through `film` down to vertex `end`.
@@ -81,7 +90,7 @@ pub(super) fn repeat(
 pub(super) fn from_lens(
     scene: &Tracer<'_>,
     x: &Path,
-    (film, end): (DVec2, usize),
+    LensWalk { film, end }: LensWalk,
     draft: &mut Draft,
     y: &mut Path,
     mut leave: impl FnMut(DVec3) -> DVec3,
@@ -89,7 +98,8 @@ pub(super) fn from_lens(
     if !((0.0..1.0).contains(&film.x) && (0.0..1.0).contains(&film.y)) {
         return Err(Failure::OffFilm);
     }
-    draft.open(end, x.edge_count());
+    let cut = Cut { light: end, eye_from: x.edge_count() };
+    draft.open(cut);
     let mut at = x.vertices()[x.edge_count()];
     let mut direction = scene.camera().direction_from(at.position, film);
     for j in (end..x.edge_count()).rev() {
@@ -109,14 +119,7 @@ pub(super) fn from_lens(
         }
         draft.eye.push(at);
     }
-    let splice = Splice {
-        base: x,
-        kept_light: end,
-        light: &[],
-        eye: &draft.eye,
-        kept_from: x.edge_count(),
-        film: Some(film),
-    };
+    let splice = Splice { base: x, cut, light: &[], eye: &draft.eye, film: Some(film) };
     y.connect(scene, &splice)
 }
 

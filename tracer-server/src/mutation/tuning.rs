@@ -161,12 +161,15 @@ impl Parameter {
 
     fn accepts(&self, values: &[f64]) -> Option<Sizes> {
         let inside = |value: f64| (self.lowest..=self.highest).contains(&value);
-        match (self.form, values) {
-            (Form::Number, &[value]) if inside(value) => Some(Sizes { min: value, max: value }),
-            (Form::Sizes, &[min, max]) if inside(min) && inside(max) && min < max => {
-                Some(Sizes { min, max })
-            }
-            _ => None,
+        match self.form {
+            Form::Number => match *values {
+                [value] if inside(value) => Some(Sizes { min: value, max: value }),
+                _ => None,
+            },
+            Form::Sizes => match *values {
+                [min, max] if inside(min) && inside(max) && min < max => Some(Sizes { min, max }),
+                _ => None,
+            },
         }
     }
 }

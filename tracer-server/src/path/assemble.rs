@@ -7,21 +7,44 @@ use glam::{DVec2, DVec3};
 use super::{Edge, Failure, NO_SCATTERING, Path, Vertex, lens_vertex};
 use crate::scene::{Emission, Tracer};
 
+/// What is kept of a path of which something between its ends is replaced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cut {
+    /// How many vertices are kept from the light end.
+    pub light: usize,
+    /// Index of the first vertex kept at the eye end; one past the lens when the lens point is
+    /// replaced too.
+    pub eye_from: usize,
+}
+
+impl Cut {
+    /// How much that is of a path of so many vertices.
+    pub fn kept(self, vertices: usize) -> Kept {
+        Kept { light: self.light, eye: vertices.saturating_sub(self.eye_from) }
+    }
+}
+
+/// How many vertices two paths have in common at either end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Kept {
+    /// From the light end.
+    pub light: usize,
+    /// From the lens end.
+    pub eye: usize,
+}
+
 /// How a path is made of an older one: its ends are kept, what lies between is replaced.
 #[derive(Clone, Copy, Debug)]
 pub struct Splice<'a> {
     /// The older path.
     pub base: &'a Path,
-    /// Vertices kept from its light end.
-    pub kept_light: usize,
+    /// What is kept of it.
+    pub cut: Cut,
     /// New vertices on the light side, in the order of the path.
     pub light: &'a [Vertex],
     /// New vertices on the eye side, in the order of a walk from the eye: the last one comes first
     /// in the path.
     pub eye: &'a [Vertex],
-    /// The first vertex kept at the eye end, as an index into `base`; one past its end when the lens
-    /// itself is the first of `eye`.
-    pub kept_from: usize,
     /// The film point, where a walk from the lens has drawn one.
     pub film: Option<DVec2>,
 }
@@ -51,28 +74,28 @@ impl Path {
     ///
     /// Fails when the path carries no light. Visibility is not tested; see [`Path::connect`].
     pub fn splice(&mut self, scene: &Tracer<'_>, splice: &Splice<'_>) -> Result<(), Failure> {
-        let base = splice.base;
-        let first_kept = splice.kept_light + splice.light.len() + splice.eye.len();
+        let (base, cut) = (splice.base, splice.cut);
+        let first_kept = cut.light + splice.light.len() + splice.eye.len();
         self.vertices.clear();
         self.edges.clear();
         self.scattering.clear();
 
-        append(&mut self.vertices, &base.vertices[..splice.kept_light])?;
+        append(&mut self.vertices, &base.vertices[..cut.light])?;
         append(&mut self.vertices, splice.light)?;
         append(&mut self.vertices, splice.eye)?;
-        self.vertices[splice.kept_light + splice.light.len()..].reverse();
-        append(&mut self.vertices, &base.vertices[splice.kept_from..])?;
+        self.vertices[cut.light + splice.light.len()..].reverse();
+        append(&mut self.vertices, &base.vertices[cut.eye_from..])?;
 
         self.place_infinite_light(scene);
 
-        let first_new_edge = splice.kept_light.saturating_sub(1);
+        let first_new_edge = cut.light.saturating_sub(1);
         append(&mut self.edges, &base.edges[..first_new_edge])?;
         for j in first_new_edge..first_kept.min(self.vertices.len() - 1) {
             let edge = self.new_edge(scene, j)?;
             self.edges.push(edge);
         }
-        append(&mut self.edges, base.edges.get(splice.kept_from..).unwrap_or_default())?;
-        if splice.kept_from + 1 < base.vertices.len() {
+        append(&mut self.edges, base.edges.get(cut.eye_from..).unwrap_or_default())?;
+        if cut.eye_from + 1 < base.vertices.len() {
             self.film = base.film;
             self.pixel = base.pixel;
         } else {
@@ -84,7 +107,7 @@ impl Path {
             let scattering = self.new_scattering(scene, j)?;
             self.scattering.push(scattering);
         }
-        let copied = (splice.kept_from + 1).min(base.scattering.len());
+        let copied = (cut.eye_from + 1).min(base.scattering.len());
         append(&mut self.scattering, &base.scattering[copied..])?;
         if self.scattering.len() < self.vertices.len() {
             self.scattering.push(NO_SCATTERING);
@@ -96,7 +119,7 @@ impl Path {
     /// eye side. Without a light side the walk from the eye has hit the light, and there is none.
     pub fn connect(&mut self, scene: &Tracer<'_>, splice: &Splice<'_>) -> Result<(), Failure> {
         self.splice(scene, splice)?;
-        let last_light = (splice.kept_light + splice.light.len()).checked_sub(1);
+        let last_light = (splice.cut.light + splice.light.len()).checked_sub(1);
         match last_light {
             Some(j) if !self.connection_is_clear(scene, j) => Err(Failure::Occluded),
             _ => Ok(()),

@@ -4,9 +4,8 @@ use arrayvec::ArrayVec;
 use glam::DVec2;
 
 use super::resample::{end_on_light, open_for_connection};
-use super::walk::{Aim, emit, extend, light_vertex, scatter};
-use super::{MAX_VERTICES, Numbers, Path, ROW, Splice, Strand, Vertex, Vertices};
-use crate::bsdf::Scatter as _;
+use super::walk::{CameraSample, emit, extend, light_vertex, scatter};
+use super::{Cut, MAX_VERTICES, Numbers, Path, ROW, Splice, Strand, Vertex, Vertices};
 use crate::scene::Tracer;
 
 /// Vertices of a subpath that are made before Russian roulette begins.
@@ -112,14 +111,14 @@ impl BidirectionalSampler {
     pub fn sample(
         &mut self,
         scene: &Tracer<'_>,
-        aim: Aim,
+        aim: CameraSample,
         numbers: &mut impl Numbers,
         mut visit: impl FnMut(&Path, f64),
     ) {
         let limit = scene.max_edges();
         self.light.clear();
         self.eye.clear();
-        let Aim { film, lens } = aim;
+        let CameraSample { film, lens } = aim;
         self.lens.move_lens(lens);
         self.eye.grow(scene, &lens, aim.direction(scene), limit, |j| {
             numbers.row(Strand::Eye, Strand::Eye.scattering_row(j))
@@ -148,10 +147,9 @@ impl BidirectionalSampler {
         }
         let splice = Splice {
             base: &self.lens,
-            kept_light: 0,
+            cut: Cut { light: 0, eye_from: 0 },
             light: &[],
             eye: &self.eye.vertices[..count],
-            kept_from: 0,
             film: Some(film),
         };
         let made = self.path.splice(scene, &splice).is_ok();
@@ -186,7 +184,7 @@ impl BidirectionalSampler {
                 }
             }
             let drawn = (eye > 0).then_some(film);
-            if self.join(scene, (light, eye), drawn) {
+            if self.join(scene, light, eye, drawn) {
                 let eye_survival = if eye > 0 { self.eye.survival[eye - 1] } else { 1.0 };
                 let survival = eye_survival * self.light.survival[light - 1];
                 visit(&self.path, 1.0 / (self.path.density_sum() * survival));
@@ -202,18 +200,12 @@ impl BidirectionalSampler {
 
     /// Makes the path of the first `light` vertices and the first `eye` vertices, whose ends are
     /// open; false when it carries no light.
-    fn join(
-        &mut self,
-        scene: &Tracer<'_>,
-        (light, eye): (usize, usize),
-        film: Option<DVec2>,
-    ) -> bool {
+    fn join(&mut self, scene: &Tracer<'_>, light: usize, eye: usize, film: Option<DVec2>) -> bool {
         let splice = Splice {
             base: &self.lens,
-            kept_light: 0,
+            cut: Cut { light: 0, eye_from: 0 },
             light: &self.light.vertices[..light],
             eye: &self.eye.vertices[..eye],
-            kept_from: 0,
             film,
         };
         self.path.connect(scene, &splice).is_ok()

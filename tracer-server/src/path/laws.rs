@@ -6,11 +6,11 @@ use common::Rgb;
 use glam::DVec3;
 use tests::chi_square_test;
 
-use super::{Aim, BidirectionalSampler, Path, Vertex, emit, light_vertex};
+use super::{BidirectionalSampler, CameraSample, Path, Vertex, emit, light_vertex};
 use crate::bsdf::Bsdf;
 use crate::math::{Rng, Stream};
 use crate::scene::fixtures::{Fixture, bumpy_room, diffuse_room, every_light, specular_room};
-use crate::scene::{Glow, Tracer};
+use crate::scene::{LightKind, Tracer};
 
 /// Paths of bidirectional samples, one from each sample that has any.
 pub(super) fn sample_paths(scene: &Tracer<'_>, samples: u64) -> Vec<Path> {
@@ -18,7 +18,7 @@ pub(super) fn sample_paths(scene: &Tracer<'_>, samples: u64) -> Vec<Path> {
     let mut rng = Rng::new(5, Stream::Laboratory, 0);
     let mut paths = Vec::new();
     for _ in 0..samples {
-        let aim = Aim::from_numbers(scene, &mut rng);
+        let aim = CameraSample::from_numbers(scene, &mut rng);
         sampler.sample(scene, aim, &mut rng, |path, _| paths.push(path.clone()));
     }
     paths
@@ -53,21 +53,21 @@ fn start(scene: &Tracer<'_>, path: &Path, fixture: &Fixture) -> Start {
     let frame = scene.frame();
     let scale = frame.scale * frame.scale / scene.radiance_scale();
     let emission = scene.emission(light.primitive, light.material, w).expect("a light");
-    let glow = fixture.description.lights.first().map(|light| &light.glow);
-    match glow.filter(|_| light.is_lamp()) {
+    let kind = fixture.description.lights.first().map(|light| &light.kind);
+    match kind.filter(|_| light.is_lamp()) {
         None => Start {
             color: emission.color,
             pdf: emission.pdf,
             geometry: light.normal.dot(w) / r2,
             next_pdf: light.normal.dot(w) / PI / r2,
         },
-        Some(Glow::Point { intensity, .. }) => Start {
+        Some(LightKind::Point { intensity, .. }) => Start {
             color: *intensity * scale,
             pdf: emission.pdf,
             geometry: 1.0 / r2,
             next_pdf: 1.0 / (4.0 * PI) / r2,
         },
-        Some(Glow::Spot { intensity, direction, cutoff, beam, .. }) => {
+        Some(LightKind::Spot { intensity, direction, cutoff, beam, .. }) => {
             let cosine = |degrees: f64| degrees.to_radians().cos();
             let t = (direction.normalize().dot(w) - cosine(*cutoff))
                 / (cosine(*beam) - cosine(*cutoff));
@@ -79,7 +79,7 @@ fn start(scene: &Tracer<'_>, path: &Path, fixture: &Fixture) -> Start {
                 next_pdf: 1.0 / (2.0 * PI * (1.0 - cosine(*cutoff))) / r2,
             }
         }
-        Some(Glow::Directional { .. } | Glow::Environment { .. }) => {
+        Some(LightKind::Directional { .. } | LightKind::Environment { .. }) => {
             // The ball around the cube of two units in which the fixtures with such lights lie.
             let radius2 = 3.0 * frame.scale * frame.scale;
             Start {

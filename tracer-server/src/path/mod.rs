@@ -18,7 +18,7 @@ mod tape;
 mod vertex;
 mod walk;
 
-pub use assemble::Splice;
+pub use assemble::{Cut, Kept, Splice};
 pub use bidirectional::BidirectionalSampler;
 pub use class::ClassKey;
 pub use failure::Failure;
@@ -26,17 +26,14 @@ pub use numbers::{Numbers, ROW, STRANDS, Strand};
 pub use resample::{Draft, Range, end_on_light, open_for_connection, resample};
 pub use tape::Tape;
 pub use vertex::Vertex;
-pub use walk::{Aim, emit, extend, lens_vertex, light_vertex, scatter};
+pub use walk::{CameraSample, emit, extend, lens_vertex, light_vertex, scatter};
 
 use arrayvec::ArrayVec;
-use common::Rgb;
+use common::{MAX_VERTICES, Rgb};
 use glam::{DVec2, DVec3};
 
 use crate::bsdf::Scattering;
 use crate::scene::{MAX_EDGES, Tracer};
-
-/// Most vertices a path can have.
-pub const MAX_VERTICES: usize = MAX_EDGES + 1;
 
 /// Vertices in the order of a walk.
 pub type Vertices = ArrayVec<Vertex, MAX_VERTICES>;
@@ -201,10 +198,9 @@ impl Path {
         let lens = Self::from_lens(lens);
         let splice = Splice {
             base: &lens,
-            kept_light: 0,
+            cut: Cut { light: 0, eye_from: 0 },
             light: inner,
             eye: &[],
-            kept_from: 0,
             film: Some(film),
         };
         let mut path = Self::default();

@@ -46,7 +46,7 @@ mod tests {
 
     use crate::bsdf::Bsdf;
     use crate::math::{Rng, Stream};
-    use crate::path::{Aim, BidirectionalSampler};
+    use crate::path::{BidirectionalSampler, CameraSample};
     use crate::scene::Tracer;
     use crate::scene::fixtures::diffuse_room;
 
@@ -62,7 +62,7 @@ mod tests {
             other => panic!("all is matt, but {}", other.name()),
         };
         for _ in 0..200 {
-            let aim = Aim::from_numbers(&scene, &mut rng);
+            let aim = CameraSample::from_numbers(&scene, &mut rng);
             sampler.sample(&scene, aim, &mut rng, |path, _| {
                 path.throughputs_into(&mut codes);
                 let mut product = common::Rgb::grey(1.0);

@@ -2,18 +2,15 @@
 
 use glam::{DVec2, DVec3};
 
-use super::walk::{Aim, emit, light_vertex, scatter, walk};
-use super::{Failure, Numbers, Path, Splice, Strand, Vertex, Vertices};
-use crate::bsdf::Scatter as _;
+use super::walk::{CameraSample, emit, light_vertex, scatter, walk};
+use super::{Cut, Failure, Numbers, Path, Splice, Strand, Vertex, Vertices};
 use crate::scene::Tracer;
 
 /// Which vertices are deleted and how many are made from each side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Range {
-    /// Vertices kept from the light end.
-    pub kept_light: usize,
-    /// First vertex kept at the eye end; one past the lens when the lens point is replaced too.
-    pub kept_from: usize,
+    /// What is kept.
+    pub cut: Cut,
     /// Vertices to make by a walk from the light side.
     pub from_light: usize,
     /// Vertices to make by a walk from the eye side, a new lens point included.
@@ -25,7 +22,8 @@ impl Range {
     /// light and `eye` made from the eye; a lens that has an area gets a new point too.
     pub fn whole(edges: usize, light: usize, eye: usize, aperture: bool) -> Self {
         let lens = usize::from(aperture);
-        Self { kept_light: 0, kept_from: edges + lens, from_light: light, from_eye: eye + lens }
+        let cut = Cut { light: 0, eye_from: edges + lens };
+        Self { cut, from_light: light, from_eye: eye + lens }
     }
 }
 
@@ -36,17 +34,16 @@ pub struct Draft {
     pub light: Vertices,
     /// Vertices of a walk from the eye side.
     pub eye: Vertices,
-    /// Vertices kept from the light end and the first one kept at the eye end, as in [`Range`], once
-    /// they are chosen: what a failed proposal meant to replace.
-    pub range: Option<(usize, usize)>,
+    /// What is kept, once it is chosen: a failed proposal meant to replace the rest.
+    pub cut: Option<Cut>,
     /// Film displacements used so far by strategies that spread them evenly: a chain's own count.
     pub displacements: u64,
 }
 
 impl Draft {
-    /// Empties both sides for vertices that will replace a range; the count goes on.
-    pub fn open(&mut self, kept_light: usize, kept_from: usize) {
-        self.range = Some((kept_light, kept_from));
+    /// Empties both sides for vertices that will replace what lies between; the count goes on.
+    pub fn open(&mut self, cut: Cut) {
+        self.cut = Some(cut);
         self.light.clear();
         self.eye.clear();
     }
@@ -62,7 +59,7 @@ pub fn resample(
     draft: &mut Draft,
     y: &mut Path,
 ) -> Result<(), Failure> {
-    draft.open(range.kept_light, range.kept_from);
+    draft.open(range.cut);
     let Draft { light, eye, .. } = draft;
     walk_from_light(scene, x, range, numbers, light)?;
     let film = walk_from_eye(scene, x, range, numbers, eye)?;
@@ -78,9 +75,9 @@ fn join(
     draft: &mut Draft,
     y: &mut Path,
 ) -> Result<(), Failure> {
-    let connected = range.kept_light + range.from_light > 0;
+    let connected = range.cut.light + range.from_light > 0;
     if connected {
-        let starts_on_light = range.kept_light == 0 && draft.light.len() == 1;
+        let starts_on_light = range.cut.light == 0 && draft.light.len() == 1;
         if let Some(end) = draft.light.last_mut().filter(|_| !starts_on_light) {
             open_for_connection(scene, end)?;
         }
@@ -91,14 +88,7 @@ fn join(
         let end = draft.eye.last_mut().ok_or(Failure::NoSubpath)?;
         end_on_light(scene, end)?;
     }
-    let splice = Splice {
-        base: x,
-        kept_light: range.kept_light,
-        light: &draft.light,
-        eye: &draft.eye,
-        kept_from: range.kept_from,
-        film,
-    };
+    let splice = Splice { base: x, cut: range.cut, light: &draft.light, eye: &draft.eye, film };
     y.connect(scene, &splice)
 }
 
@@ -151,7 +141,7 @@ fn walk_from_light(
         return Ok(());
     }
     let mut count = range.from_light;
-    let (start, direction) = match range.kept_light {
+    let (start, direction) = match range.cut.light {
         0 => {
             let start = light_vertex(scene, numbers.row(Strand::Light, 0));
             out.push(start);
@@ -170,7 +160,7 @@ fn walk_from_light(
             (start, direction)
         }
     };
-    let kept = range.kept_light.max(1) - 1;
+    let kept = range.cut.light.max(1) - 1;
     let scattering = |j| numbers.row(Strand::Light, Strand::Light.scattering_row(kept + j));
     walk(scene, &start, direction, count, scattering, out)
 }
@@ -187,28 +177,28 @@ fn walk_from_eye(
         return Ok(None);
     }
     let mut count = range.from_eye;
-    let aim = if range.kept_from > x.edge_count() {
+    let aim = if range.cut.eye_from > x.edge_count() {
         // Without a walk the film point is not used: the connection tells it.
-        let aim = Aim::from_numbers(scene, numbers);
+        let aim = CameraSample::from_numbers(scene, numbers);
         out.push(aim.lens);
         count -= 1;
         if count == 0 {
             return Ok(None);
         }
         Some(aim)
-    } else if x.vertices()[range.kept_from].is_lens() {
+    } else if x.vertices()[range.cut.eye_from].is_lens() {
         let film = DVec2::from(numbers.row(Strand::Eye, 0));
-        Some(Aim { film, lens: x.vertices()[range.kept_from] })
+        Some(CameraSample { film, lens: x.vertices()[range.cut.eye_from] })
     } else {
         None
     };
     // Vertices kept behind the lens, which is number zero of the walk.
-    let kept = x.edge_count().saturating_sub(range.kept_from);
+    let kept = x.edge_count().saturating_sub(range.cut.eye_from);
     let (start, direction) = if let Some(aim) = &aim {
         (aim.lens, aim.direction(scene))
     } else {
-        let mut start = x.vertices()[range.kept_from];
-        let back = x.edges()[range.kept_from].direction;
+        let mut start = x.vertices()[range.cut.eye_from];
+        let back = x.edges()[range.cut.eye_from].direction;
         let onward = leave(scene, &mut start, back, numbers.row(Strand::Eye, kept))?;
         (start, onward)
     };

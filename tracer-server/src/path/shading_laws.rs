@@ -4,7 +4,7 @@ use glam::DVec2;
 use tests::Accumulator;
 
 use super::laws::shading;
-use super::{Aim, BidirectionalSampler, Path};
+use super::{BidirectionalSampler, CameraSample, Path};
 use crate::math::{Rng, Stream};
 use crate::scene::Tracer;
 use crate::scene::fixtures::{Fixture, bumpy_room};
@@ -51,7 +51,7 @@ fn light_on_film(
     let mut rng = Rng::new(seed, Stream::Laboratory, 0);
     let mut sums = vec![Accumulator::default(); BLOCKS * BLOCKS + 1];
     for _ in 0..240_000 {
-        let aim = Aim::through(&scene, DVec2::from(rng.array()), || [0.0; 2]);
+        let aim = CameraSample::through(&scene, DVec2::from(rng.array()), || [0.0; 2]);
         let mut light = [0.0; BLOCKS * BLOCKS + 1];
         sampler.sample(&scene, aim, &mut rng, |path, weight| {
             let weight = weight * path.density_sum() / density_sum(&scene, path);

@@ -8,14 +8,14 @@ use crate::scene::{NO_PRIMITIVE, Tracer};
 
 /// Where a walk from the lens begins: the film point, and the vertex on the lens.
 #[derive(Clone, Copy, Debug)]
-pub struct Aim {
+pub struct CameraSample {
     /// The film point, `u` to the right and `v` downwards, both in [0, 1).
     pub film: DVec2,
     /// The vertex on the lens.
     pub lens: Vertex,
 }
 
-impl Aim {
+impl CameraSample {
     /// Through `film`; `numbers` are asked for the lens point where the lens has an area.
     #[inline]
     pub fn through(scene: &Tracer<'_>, film: DVec2, numbers: impl FnOnce() -> [f64; 2]) -> Self {

@@ -5,11 +5,11 @@ use std::time::Instant;
 
 use common::Rgb;
 
-use super::BsdfDescription;
 use super::Scene;
 use super::builtin::{BUILTINS, Builtin};
 use super::fixtures::shared_scenes;
 use super::load::{Loaded, load};
+use crate::bsdf::{BsdfDescription, DielectricDescription, MirrorDescription};
 
 fn triangles(loaded: &Loaded) -> usize {
     loaded.description.meshes.iter().map(|mesh| mesh.triangles.len()).sum()
@@ -39,14 +39,17 @@ fn the_built_in_scenes_are_what_their_heads_say() {
     assert!(cornell.description.spheres.is_empty());
     let diffuse = |loaded: &Loaded| {
         let mut materials = loaded.description.materials.iter();
-        materials.all(|m| matches!(m.bsdf, BsdfDescription::Lambert { .. }))
+        materials.all(|m| matches!(m.bsdf, BsdfDescription::Lambert(_)))
     };
     assert!(diffuse(&cornell) && diffuse(&load("door").expect("loads")), "matt only");
     let caustic = load("caustic").expect("loads");
     assert_eq!(caustic.description.spheres.len(), 1);
-    assert!(matches!(bsdf(&caustic, "glass"), BsdfDescription::Dielectric { eta: 1.5, .. }));
+    assert!(matches!(
+        bsdf(&caustic, "glass"),
+        BsdfDescription::Dielectric(DielectricDescription { eta: 1.5, .. })
+    ));
     let mirrors = load("mirror-caustic").expect("loads");
-    assert!(matches!(bsdf(&mirrors, "silver"), BsdfDescription::Mirror { .. }));
+    assert!(matches!(bsdf(&mirrors, "silver"), BsdfDescription::Mirror(_)));
     let door = triangles(&load("door").expect("loads"));
     assert!((50..400).contains(&door), "{door} triangles");
 }
@@ -110,11 +113,11 @@ fn mirror_glass_and_water_are_recognised() {
     let Some(scenes) = shared_scenes() else { return };
     let water = load_shared(&scenes, "cornell-mcguire/CornellBox-Water.obj");
     let eta = |name| match bsdf(&water, name) {
-        BsdfDescription::Dielectric { eta, .. } => eta,
+        BsdfDescription::Dielectric(DielectricDescription { eta, .. }) => eta,
         other => panic!("{name} is {other:?}"),
     };
     assert_eq!((eta("water"), eta("rightSphere")), (1.33, 1.5));
-    let mirror = BsdfDescription::Mirror { reflectance: Rgb::grey(0.95) };
+    let mirror = BsdfDescription::Mirror(MirrorDescription { reflectance: Rgb::grey(0.95) });
     assert_eq!(bsdf(&water, "leftSphere"), mirror);
     let original = load_shared(&scenes, "cornell-mcguire/CornellBox-Original.obj");
     let light = original.description.materials.iter().find(|m| m.name == "light");

@@ -8,10 +8,13 @@ use common::{CameraPose, Rgb};
 use glam::{DMat3, DVec3, Vec3, Vec3Swizzles as _};
 
 use super::{
-    BsdfDescription, ColorInput, Glow, LightDescription, Material, Mesh, Scene, SceneDescription,
-    SkyImage, Sphere, ThinLens,
+    LightDescription, LightKind, Material, Mesh, Scene, SceneDescription, SkyImage, Sphere,
+    ThinLens,
 };
-use crate::bsdf::Fresnel;
+use crate::bsdf::{
+    BsdfDescription, ColorInput, ConductorDescription, DielectricDescription, Fresnel,
+    LambertDescription, MirrorDescription, PlasticDescription,
+};
 
 /// Builds descriptions shape by shape.
 #[derive(Clone, Debug)]
@@ -20,17 +23,18 @@ pub(crate) struct Fixture {
 }
 
 pub(crate) const fn lambert(r: f64, g: f64, b: f64) -> BsdfDescription {
-    BsdfDescription::Lambert { reflectance: ColorInput::Constant(Rgb::new(r, g, b)) }
+    BsdfDescription::Lambert(LambertDescription {
+        reflectance: ColorInput::Constant(Rgb::new(r, g, b)),
+    })
 }
 
 pub(crate) const MIRROR: BsdfDescription =
-    BsdfDescription::Mirror { reflectance: Rgb::new(0.9, 0.85, 0.8) };
+    BsdfDescription::Mirror(MirrorDescription { reflectance: Rgb::new(0.9, 0.85, 0.8) });
 
-pub(crate) const GLASS: BsdfDescription = BsdfDescription::Dielectric {
-    eta: 1.5,
-    reflectance: Rgb::WHITE,
+pub(crate) const GLASS: BsdfDescription = BsdfDescription::Dielectric(DielectricDescription {
     transmittance: Rgb::new(0.95, 1.0, 0.9),
-};
+    ..DielectricDescription::clear(1.5)
+});
 
 impl Fixture {
     /// An empty scene with a camera at `origin` that looks at `target`.
@@ -91,9 +95,9 @@ impl Fixture {
             .quad(front, emission, [-1., -1., 1.], [0., 2., 0.], [2., 0., 0.])
     }
 
-    pub(crate) fn light(mut self, glow: Glow) -> Self {
+    pub(crate) fn light(mut self, kind: LightKind) -> Self {
         let name = format!("light {}", self.description.lights.len());
-        self.description.lights.push(LightDescription { name, glow });
+        self.description.lights.push(LightDescription { name, kind });
         self
     }
 
@@ -130,8 +134,8 @@ impl Fixture {
             lens.focus *= factor;
         }
         for light in &mut description.lights {
-            if let Glow::Point { position, intensity } | Glow::Spot { position, intensity, .. } =
-                &mut light.glow
+            if let LightKind::Point { position, intensity }
+            | LightKind::Spot { position, intensity, .. } = &mut light.kind
             {
                 *position *= factor;
                 *intensity = *intensity * (factor * factor);
@@ -191,28 +195,30 @@ pub(crate) fn saturated_room() -> Fixture {
 /// rough metal and of rough glass.
 pub(crate) fn coated_room() -> Fixture {
     let coat = Fresnel::Dielectric { eta: 1.5, tint: Rgb::WHITE };
-    let paint = |r, g, b, roughness| BsdfDescription::Plastic {
-        diffuse: Rgb::new(r, g, b).into(),
-        fresnel: coat,
-        roughness,
-        nonlinear: false,
+    let paint = |r, g, b, roughness| {
+        BsdfDescription::Plastic(PlasticDescription {
+            diffuse: Rgb::new(r, g, b).into(),
+            fresnel: coat,
+            roughness,
+            nonlinear: false,
+        })
     };
-    let lacquer = BsdfDescription::Plastic {
+    let lacquer = BsdfDescription::Plastic(PlasticDescription {
         diffuse: Rgb::new(0.5, 0.4, 0.2).into(),
         fresnel: Fresnel::Schlick(Rgb::grey(0.3)),
         roughness: 0.0,
         nonlinear: false,
-    };
-    let steel = BsdfDescription::Conductor {
+    });
+    let steel = BsdfDescription::Conductor(ConductorDescription {
         fresnel: Fresnel::Schlick(Rgb::new(0.9, 0.7, 0.5)),
         roughness: 0.3.into(),
-    };
-    let frosted = BsdfDescription::RoughDielectric {
+    });
+    let frosted = BsdfDescription::Dielectric(DielectricDescription {
         eta: 1.5,
         reflectance: Rgb::WHITE,
         transmittance: Rgb::new(0.9, 1.0, 0.8),
         roughness: 0.25.into(),
-    };
+    });
     let walls =
         [paint(0.7, 0.2, 0.1, 0.2), GREEN, lacquer, WHITE, paint(0.7, 0.7, 0.6, 0.0), WHITE];
     Fixture::new(DVec3::new(0.1, 0.0, 0.95), DVec3::new(0.0, -0.1, -1.0), 70.0)
@@ -291,11 +297,7 @@ pub(crate) fn wall_in_a_pane() -> Fixture {
 /// A slab of dense glass between a wide lamp and a diffuse floor; the camera looks through the
 /// slab at many angles, or from below it.
 pub(crate) fn slab_over_floor(through: bool) -> Fixture {
-    let dense = BsdfDescription::Dielectric {
-        eta: 2.4,
-        reflectance: Rgb::WHITE,
-        transmittance: Rgb::WHITE,
-    };
+    let dense = BsdfDescription::from(DielectricDescription::clear(2.4));
     let (origin, target) = if through {
         (DVec3::new(0.3, 1.2, 1.6), DVec3::new(0.0, 0.5, 0.3))
     } else {
@@ -319,7 +321,7 @@ pub(crate) fn wall_and_lamp_in_a_pane() -> Fixture {
 }
 
 /// A room that is open to the front and above, without a light.
-fn open_room() -> Fixture {
+pub(crate) fn open_room() -> Fixture {
     Fixture::new(DVec3::new(0.1, 0.1, 2.5), DVec3::new(0.0, -0.1, -1.0), 45.0)
         .quad(RED, Rgb::BLACK, [-1., -1., -1.], [0., 2., 0.], [0., 0., 2.])
         .quad(GREEN, Rgb::BLACK, [1., -1., -1.], [0., 0., 2.], [0., 2., 0.])
@@ -330,12 +332,12 @@ fn open_room() -> Fixture {
 }
 
 /// The same with a ball of glass.
-fn open_room_with_glass() -> Fixture {
+pub(crate) fn open_room_with_glass() -> Fixture {
     open_room().sphere(GLASS, Rgb::BLACK, [-0.45, -0.6, -0.1], 0.35)
 }
 
 /// A sky with a bright spot.
-pub(crate) fn image_sky() -> Glow {
+pub(crate) fn image_sky() -> LightKind {
     let (width, height) = (16, 8);
     let mut texels = vec![[0.4, 0.5, 0.7]; width * height];
     texels[2 * width + 7] = [90.0, 80.0, 50.0];
@@ -343,7 +345,7 @@ pub(crate) fn image_sky() -> Glow {
     texels[5 * width..].fill([0.1, 0.08, 0.05]);
     let rotation = DMat3::from_rotation_y(0.4);
     let image = Some(SkyImage { width, height, texels });
-    Glow::Environment { radiance: Rgb::new(1.0, 1.0, 0.9), image, rotation }
+    LightKind::Environment { radiance: Rgb::new(1.0, 1.0, 0.9), image, rotation }
 }
 
 /// One fixture with each kind of light, and one with a lens that has an area.
@@ -351,21 +353,37 @@ pub(crate) fn every_light() -> Vec<(&'static str, Fixture)> {
     let position = DVec3::new(0.3, 0.7, 0.2);
     let direction = DVec3::new(-0.3, -1.0, -0.3);
     let intensity = Rgb::new(3.0, 2.5, 2.0);
-    let spot = Glow::Spot { position, direction, intensity, cutoff: 50.0, beam: 25.0 };
-    let plain = Glow::Environment {
+    let spot = LightKind::Spot { position, direction, intensity, cutoff: 50.0, beam: 25.0 };
+    let plain = LightKind::Environment {
         radiance: Rgb::new(0.6, 0.7, 0.9),
         image: None,
         rotation: DMat3::IDENTITY,
     };
     vec![
-        ("point", open_room().light(Glow::Point { position, intensity })),
+        ("point", open_room().light(LightKind::Point { position, intensity })),
         ("spot", open_room().light(spot)),
-        ("sun", open_room().light(Glow::Directional { direction, irradiance: intensity })),
-        ("point and glass", open_room_with_glass().light(Glow::Point { position, intensity })),
+        ("sun", open_room().light(LightKind::Directional { direction, irradiance: intensity })),
+        ("point and glass", open_room_with_glass().light(LightKind::Point { position, intensity })),
         ("even sky", open_room_with_glass().light(plain)),
         ("image sky", open_room_with_glass().light(image_sky())),
         ("lens", specular_room().lens(0.05, 1.6).max_edges(5)),
     ]
+}
+
+#[test]
+fn every_kind_of_light_is_there() {
+    // A new variant does not compile here: give it the next number, and add it to the lights.
+    let number = |kind: &LightKind| match kind {
+        LightKind::Point { .. } => 0,
+        LightKind::Spot { .. } => 1,
+        LightKind::Directional { .. } => 2,
+        LightKind::Environment { .. } => 3,
+    };
+    let lights = every_light().into_iter().flat_map(|(_, fixture)| fixture.description.lights);
+    let mut seen: Vec<usize> = lights.map(|light| number(&light.kind)).collect();
+    seen.sort_unstable();
+    seen.dedup();
+    assert_eq!(seen, [0, 1, 2, 3], "a kind of light is not among them");
 }
 
 /// The folder of scenes made by others, or `None` with a printed line.

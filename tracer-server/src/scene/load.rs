@@ -153,7 +153,7 @@ fn check(read: Read) -> Result<Loaded, LoadError> {
         let subject = subject_of(&description, &problem);
         let notes = notes(&warnings);
         let message = format!("{subject}{}{notes}", problem.message);
-        origins.of(problem.part, problem.field).error(message)
+        origins.of(problem.part, &problem.field).error(message)
     })?;
     for drop in dropped {
         let name = names.get(drop.mesh).map_or("", String::as_str);
@@ -170,7 +170,7 @@ fn check(read: Read) -> Result<Loaded, LoadError> {
 
 /// "material `red`, eta: ", or nothing for what is wrong with the whole.
 fn subject_of(description: &SceneDescription, problem: &Problem) -> String {
-    let named = |kind: &str, name: Option<&String>| match (name, problem.field) {
+    let named = |kind: &str, name: Option<&String>| match (name, problem.field.as_str()) {
         (Some(name), "") => format!("{kind} `{name}`: "),
         (Some(name), field) => format!("{kind} `{name}`, {field}: "),
         (None, _) => String::new(),

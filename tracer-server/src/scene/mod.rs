@@ -19,8 +19,8 @@ mod toml;
 mod world;
 
 pub use description::{
-    BsdfDescription, Coding, ColorInput, Glow, LightDescription, MAX_EDGES, Material, Mesh,
-    NumberInput, SceneDescription, SkyImage, Sphere, Texture, ThinLens,
+    Coding, LightDescription, LightKind, MAX_EDGES, Material, Mesh, SceneDescription, SkyImage,
+    Sphere, Texture, ThinLens,
 };
 pub use reading::{StrategySetting, Wish};
 pub use world::{

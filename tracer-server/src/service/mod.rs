@@ -6,7 +6,7 @@
 mod access;
 mod connections;
 mod outbound;
-mod room;
+mod roster;
 mod scene;
 mod server;
 mod session;
@@ -35,8 +35,8 @@ use crate::hub::{Hub, Pump};
 use crate::steering::Steering;
 use access::Allowed;
 use outbound::Outbound;
-use room::Room;
-use session::{House, Session};
+use roster::Roster;
+use session::{Session, SharedState};
 
 /// Viewers send small messages only.
 const MAX_REQUEST_BYTES: usize = 64 << 10;
@@ -93,16 +93,31 @@ pub enum ServeError {
     Transport(#[from] tonic::transport::Error),
 }
 
+/// What a service shows, and whom it lets in.
+#[derive(Debug)]
+pub struct Backend {
+    /// Where viewers meet the chains.
+    pub hub: Hub,
+    /// What empties the hub's queues.
+    pub pump: Pump,
+    /// What every viewer is told first.
+    pub info: Arc<SessionInfo>,
+    /// Where orders go.
+    pub steering: Steering,
+    /// Who may come in.
+    pub security: Security,
+}
+
 /// Serves viewers on `listener` until `shutdown`, and returns when everything it started has ended.
 ///
 /// Viewers that are connected at the end are told so. Those that do not read are left behind after
 /// two seconds.
 pub async fn serve(
     listener: TcpListener,
-    (hub, pump): (Hub, Pump),
-    (info, steering, security): (Arc<SessionInfo>, Steering, Security),
+    backend: Backend,
     shutdown: CancellationToken,
 ) -> Result<(), ServeError> {
+    let Backend { hub, pump, info, steering, security } = backend;
     let tasks = TaskTracker::new();
     tasks.spawn(pump.run(shutdown.clone()));
 
@@ -117,8 +132,9 @@ pub async fn serve(
     let (reflection, early_reflection) = (reflection().build_v1()?, reflection().build_v1alpha()?);
     let filter_scene = Arc::new(info.filter_scene());
     let (task_list, token) = (tasks.clone(), shutdown.clone());
-    let house = Arc::new(House { filter_scene, steering, room: Room::new(hub.clone()) });
-    let service = TracerService { hub, info, house, tasks: task_list, shutdown: token };
+    let roster = Roster::new(hub.clone());
+    let shared = Arc::new(SharedState { filter_scene, steering, roster });
+    let service = TracerService { hub, info, shared, tasks: task_list, shutdown: token };
     let tracer = TracerServer::new(service)
         .max_decoding_message_size(MAX_REQUEST_BYTES)
         .max_encoding_message_size(MAX_MESSAGE_BYTES);
@@ -159,7 +175,7 @@ pub async fn serve(
 struct TracerService {
     hub: Hub,
     info: Arc<SessionInfo>,
-    house: Arc<House>,
+    shared: Arc<SharedState>,
     tasks: TaskTracker,
     shutdown: CancellationToken,
 }
@@ -183,14 +199,14 @@ impl Tracer for TracerService {
             hello = session::handshake(&mut inbound) => hello?,
             () = self.shutdown.cancelled() => return Err(Status::unavailable(SHUTTING_DOWN)),
         };
-        session::check_filter(&hello, &self.house.filter_scene)?;
+        session::check_filter(&hello, &self.shared.filter_scene)?;
         let subscription = self
             .hub
             .subscribe(hello.data_budget)
             .map_err(|full| Status::resource_exhausted(full.to_string()))?;
         let (sender, outbound) = outbound::channel();
-        let house = Arc::clone(&self.house);
-        let (session, entry) = Session::enter(hello, subscription, house, allowed);
+        let shared = Arc::clone(&self.shared);
+        let (session, entry) = Session::enter(hello, subscription, shared, allowed);
         let welcome = Welcome {
             session: session.number(),
             role: entry.role,

@@ -11,7 +11,7 @@ use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 use tokio_util::sync::CancellationToken;
 
-use super::{Security, SessionInfo, serve};
+use super::{Backend, Security, SessionInfo, serve};
 use crate::hub::{Hub, HubLimits};
 use crate::steering::Steering;
 
@@ -74,8 +74,9 @@ impl Server {
 
         let (hub, pump) = Hub::new(limits);
         let (shutdown, ended) = (CancellationToken::new(), CancellationToken::new());
-        let offer = (Arc::new(info), steering, security);
-        let service = serve(listener, (hub.clone(), pump), offer, shutdown.clone());
+        let (info, shown) = (Arc::new(info), hub.clone());
+        let backend = Backend { hub: shown, pump, info, steering, security };
+        let service = serve(listener, backend, shutdown.clone());
         let ends = ended.clone().drop_guard();
         let run = move || {
             let _ends = ends;

@@ -15,7 +15,7 @@ use tokio_util::sync::CancellationToken;
 use tonic::{Status, Streaming};
 
 use super::outbound::Sender;
-use super::room::{Entry, Room};
+use super::roster::{Entry, Roster};
 use super::{FILTER_INTERVAL, HELLO_TIMEOUT, SHUTTING_DOWN};
 use crate::hub::Subscription;
 use crate::steering::{Envelope, Steering};
@@ -32,7 +32,16 @@ pub(super) async fn handshake(inbound: &mut Streaming<ViewerMessage>) -> Result<
     let message = message.ok_or_else(|| Status::invalid_argument("the viewer said nothing"))?;
     match ViewerEvent::try_from(message).map_err(|error| refusal(&error))? {
         ViewerEvent::Hello(hello) => Ok(hello),
-        _ => Err(Status::invalid_argument("the first message must be `hello`")),
+        ViewerEvent::SetBudget(_)
+        | ViewerEvent::SetFilter(_)
+        | ViewerEvent::SetFocus(_)
+        | ViewerEvent::Order(_)
+        | ViewerEvent::Appearance(_)
+        | ViewerEvent::Inspect(_)
+        | ViewerEvent::Goodbye(_)
+        | ViewerEvent::Unknown => {
+            Err(Status::invalid_argument("the first message must be `hello`"))
+        }
     }
 }
 
@@ -52,7 +61,15 @@ fn understand(filter: &FilterText, scene: &FilterScene) -> Result<CompiledFilter
 fn refusal(error: &WireError) -> Status {
     match error {
         WireError::Version { .. } => Status::failed_precondition(error.to_string()),
-        _ => Status::invalid_argument(error.to_string()),
+        WireError::Missing(_)
+        | WireError::TooLong { .. }
+        | WireError::OutOfRange { .. }
+        | WireError::OutOfBounds { .. }
+        | WireError::BadNumber { .. }
+        | WireError::ColumnLength { .. }
+        | WireError::Batch(_)
+        | WireError::Camera(_)
+        | WireError::Scene(_) => Status::invalid_argument(error.to_string()),
     }
 }
 
@@ -87,26 +104,26 @@ enum Heard {
 
 /// What all sessions share.
 #[derive(Debug)]
-pub(super) struct House {
+pub(super) struct SharedState {
     /// What filters may name.
     pub(super) filter_scene: Arc<FilterScene>,
     /// Where orders go.
     pub(super) steering: Steering,
     /// Who is there.
-    pub(super) room: Room,
+    pub(super) roster: Roster,
 }
 
-/// One viewer's conversation; ending it leaves the room.
+/// One viewer's conversation; ending it leaves the roster.
 #[derive(Debug)]
 pub(super) struct Session {
     hello: Hello,
     subscription: Subscription,
-    house: Arc<House>,
+    shared: Arc<SharedState>,
 }
 
 impl Drop for Session {
     fn drop(&mut self) {
-        self.house.room.leave(self.number());
+        self.shared.roster.leave(self.number());
     }
 }
 
@@ -116,11 +133,11 @@ impl Session {
     pub(super) fn enter(
         hello: Hello,
         subscription: Subscription,
-        house: Arc<House>,
+        shared: Arc<SharedState>,
         allowed: Role,
     ) -> (Self, Entry) {
-        let entry = house.room.enter(subscription.session(), &hello, allowed);
-        let session = Self { hello, subscription, house };
+        let entry = shared.roster.enter(subscription.session(), &hello, allowed);
+        let session = Self { hello, subscription, shared };
         if let Some(filter) = session.hello.filter.clone().or_else(|| entry.filter.clone()) {
             session.set_filter(filter);
         }
@@ -232,7 +249,7 @@ impl Session {
                 Heard::Work
             }
             Ok(ViewerEvent::Appearance(appearance)) => {
-                self.house.room.show(self.number(), appearance);
+                self.shared.roster.show(self.number(), appearance);
                 Heard::Work
             }
             Ok(ViewerEvent::Inspect(path)) => {
@@ -253,16 +270,16 @@ impl Session {
     }
 
     fn set_focus(&self, on: bool) {
-        self.house.room.keep_focus(self.number(), on);
+        self.shared.roster.keep_focus(self.number(), on);
         self.subscription.set_focus(on);
-        self.house.steering.wake_explorer();
+        self.shared.steering.wake_explorer();
     }
 
     /// Hands an order on. Those who carry it out reply; where it does not get that far, this does.
     fn order(&self, NumberedOrder { request, order }: NumberedOrder) {
         let done = match order {
             Some(Order::Lease(wish)) => {
-                let reply = self.house.room.lease(self.number(), wish);
+                let reply = self.shared.roster.lease(self.number(), wish);
                 self.reply(request, reply.err());
                 return;
             }
@@ -275,8 +292,8 @@ impl Session {
     }
 
     fn hand_on(&self, request: u32, order: Order) -> Result<(), String> {
-        let author = self.house.room.driver(self.number())?;
-        let steering = &self.house.steering;
+        let author = self.shared.roster.driver(self.number())?;
+        let steering = &self.shared.steering;
         let handed = match order {
             Order::Explorer(command) => steering.explore(Envelope { author, request, command }),
             Order::Chains(command) => steering.change(Envelope { author, request, command }),
@@ -287,7 +304,7 @@ impl Session {
 
     /// Asks for the numbers behind a path. Where the question does not get through, this answers.
     fn inspect(&self, path: PathId) {
-        if let Err(error) = self.house.steering.inspect(self.number(), path) {
+        if let Err(error) = self.shared.steering.inspect(self.number(), path) {
             let found = Err(error.to_string());
             self.subscription.notice(Notice::Detail(Box::new(DetailReply { path, found })));
         }
@@ -299,9 +316,9 @@ impl Session {
 
     fn set_filter(&self, wanted: WantedFilter) {
         let revision = wanted.revision;
-        match understand(&wanted.filter, &self.house.filter_scene) {
+        match understand(&wanted.filter, &self.shared.filter_scene) {
             Ok(filter) => {
-                self.house.room.keep_filter(self.number(), wanted);
+                self.shared.roster.keep_filter(self.number(), wanted);
                 self.subscription.set_filter(revision, Arc::new(filter));
             }
             Err(error) => {

@@ -99,32 +99,34 @@ impl Plan<'_> {
         let all = self.runs * (self.settings.len() * self.budgets.len()) as u64;
         let mut done = 0;
         for number in 0..self.runs {
-            for (budget, setting) in self.pairs() {
-                let (run, image) = self.run(scene, (setting, budget), number);
+            for cell in self.cells() {
+                let (run, image) = self.run(scene, cell, number);
                 done += 1;
                 on_run(done as f64 / all as f64, &run)?;
-                let known = points.iter_mut().find(|p| (p.setting, p.budget) == (setting, budget));
+                let known = points.iter_mut().find(|point| point.cell == cell);
                 match known {
                     Some(point) => point.add(run, &image),
-                    None => points.push(Gathering::new((setting, budget), run, image)),
+                    None => points.push(Gathering::new(cell, run, image)),
                 }
             }
         }
-        points.sort_by_key(|point| (point.budget, point.setting));
+        points.sort_by_key(|point| point.cell);
         Ok(points.into_iter().map(|point| point.finish(self)).collect())
     }
 
-    fn pairs(&self) -> impl Iterator<Item = (usize, usize)> {
+    fn cells(&self) -> impl Iterator<Item = Cell> {
         let settings = self.settings.len();
-        (0..self.budgets.len()).flat_map(move |budget| (0..settings).map(move |s| (budget, s)))
+        let row = move |budget| (0..settings).map(move |setting| Cell { budget, setting });
+        (0..self.budgets.len()).flat_map(row)
     }
 
-    fn run(&self, scene: &Scene, (setting, budget): (usize, usize), number: u64) -> (Run, Film) {
+    fn run(&self, scene: &Scene, cell: Cell, number: u64) -> (Run, Film) {
+        let Cell { budget, setting } = cell;
         let Setting { name, render: settings } = &self.settings[setting];
         let mut settings = RenderSettings { budget: self.budgets[budget], ..*settings };
         // No two budgets share a seed: their errors are independent.
         settings.ensemble.seed += number + self.runs * budget as u64;
-        let Rendering { image, report } = render(scene, &settings, |_| ());
+        let Rendering { image, report, .. } = render(scene, &settings, |_| ());
         let errors = self.errors(&image);
         let run = Run {
             setting: name.clone(),
@@ -146,18 +148,24 @@ impl Plan<'_> {
     }
 }
 
+/// A setting with a budget, by their numbers in the plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Cell {
+    budget: usize,
+    setting: usize,
+}
+
 /// A point that still grows.
 struct Gathering {
-    setting: usize,
-    budget: usize,
+    cell: Cell,
     runs: Vec<Run>,
     sum: Film,
     picture: Film,
 }
 
 impl Gathering {
-    fn new((setting, budget): (usize, usize), run: Run, image: Film) -> Self {
-        Self { setting, budget, runs: vec![run], sum: image.clone(), picture: image }
+    fn new(cell: Cell, run: Run, image: Film) -> Self {
+        Self { cell, runs: vec![run], sum: image.clone(), picture: image }
     }
 
     fn add(&mut self, run: Run, image: &Film) {
@@ -168,8 +176,8 @@ impl Gathering {
     fn finish(mut self, plan: &Plan<'_>) -> Point {
         self.sum.scale(1.0 / self.runs.len() as f64);
         Point {
-            setting: self.setting,
-            budget: self.budget,
+            setting: self.cell.setting,
+            budget: self.cell.budget,
             error_of_mean: mean_of_smallest(plan.errors(&self.sum), 1.0),
             runs: self.runs,
             picture: self.picture,
@@ -194,7 +202,7 @@ impl Reference {
         scene: &Scene,
         settings: &RenderSettings,
         floor: Floor,
-        mut on_progress: impl FnMut(f64),
+        mut on_progress: impl FnMut(f64) + Send,
     ) -> Self {
         let mut half = |seed: u64, begin: f64| {
             let mut settings = *settings;

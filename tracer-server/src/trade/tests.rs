@@ -2,6 +2,7 @@ use super::*;
 use crate::chain::EnsembleSettings;
 use crate::integrator::pssmlt::PrimarySettings;
 use crate::render::Integrator;
+use crate::replicate::Dial;
 use crate::scene::fixtures::diffuse_room;
 
 fn setting(name: &str, integrator: Integrator) -> Setting {
@@ -10,6 +11,7 @@ fn setting(name: &str, integrator: Integrator) -> Setting {
         budget: Budget::PerPixel(1),
         ensemble: EnsembleSettings { seed: 5, chains: 8, threads: 1, ..Default::default() },
         primary: PrimarySettings::default(),
+        dial: Dial::default(),
     };
     Setting { name: name.to_owned(), render }
 }

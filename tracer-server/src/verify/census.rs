@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::math::{Rng, Stream};
 use crate::parallel;
-use crate::path::{Aim, BidirectionalSampler, ClassKey, Path};
+use crate::path::{BidirectionalSampler, CameraSample, ClassKey, Path};
 use crate::scene::{Scene, Tracer};
 
 /// Samples that one stream of random numbers serves.
@@ -55,7 +55,7 @@ impl Census {
         let mut census = Self { samples: CHUNK, ..Self::default() };
         let mut sample: Vec<(ClassKey, f64)> = Vec::new();
         for _ in 0..CHUNK {
-            let aim = Aim::from_numbers(scene, &mut rng);
+            let aim = CameraSample::from_numbers(scene, &mut rng);
             sampler.sample(scene, aim, &mut rng, |path, weight| {
                 let key = ClassKey::of(path);
                 let class = census.classes.entry(key);

@@ -8,9 +8,8 @@ use common::ChainId;
 use super::census::Census;
 use super::flow::Flows;
 use super::judge::{Finding, Verdict};
-use crate::chain::{Chain, Ensemble, EnsembleSettings};
+use crate::chain::{Chain, Ensemble, EnsembleSettings, Kernel};
 use crate::film::Film;
-use crate::mutation::Mixture;
 use crate::parallel;
 use crate::path::ClassKey;
 use crate::scene::{Scene, Tracer};
@@ -153,7 +152,7 @@ fn dwell_finding(dwell: u64, steps: u64) -> Finding {
 
 /// Starts chains at paths of the rarest classes, and compares how they spread after a while
 /// \[Gelman and Rubin 1992\].
-pub fn from_the_rarest(scene: &Scene, census: &Census, mixture: &Mixture, plan: &Plan) -> Finding {
+pub fn from_the_rarest(scene: &Scene, census: &Census, kernel: &Kernel, plan: &Plan) -> Finding {
     let mut classes: Vec<_> = census.classes.values().filter(|c| census.share(c).0 > 0.0).collect();
     classes.sort_by(|a, b| census.share(a).0.total_cmp(&census.share(b).0));
     classes.truncate(RAREST);
@@ -168,9 +167,9 @@ pub fn from_the_rarest(scene: &Scene, census: &Census, mixture: &Mixture, plan: 
             let camera = scene.camera();
             let mut film = Film::new(camera.width, camera.height);
             let start = class.example.clone();
-            let mut chain = Chain::new(ChainId(id), plan.ensemble.seed, start, mixture);
+            let mut chain = Chain::new(ChainId(id), plan.ensemble.seed, start, kernel);
             for step in 0..steps {
-                chain.step(scene, mixture, &mut film);
+                chain.step(scene, kernel, &mut film);
                 if step >= steps / 2 {
                     let x = chain.current();
                     let (u, v) = (x.film().x, x.film().y);

@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::invariance::MIN_MOVES;
 use crate::path::ClassKey;
+
+/// A quantity is judged when at least this many proposals moved it each way.
+pub const MIN_MOVES: u64 = 200;
 
 /// Two different classes, the smaller key first.
 pub type Pair = (ClassKey, ClassKey);

@@ -93,7 +93,7 @@ pub fn evaluate(path: &Path, out: &mut Vec<f64>) {
 mod tests {
     use super::*;
     use crate::math::{Rng, Stream};
-    use crate::path::{Aim, BidirectionalSampler};
+    use crate::path::{BidirectionalSampler, CameraSample};
     use crate::scene::Tracer;
     use crate::scene::fixtures::specular_room;
 
@@ -103,7 +103,7 @@ mod tests {
         let scene = Tracer::new(&scene);
         let (names, mut values, mut paths) = (names(), Vec::new(), 0);
         let mut rng = Rng::new(1, Stream::Laboratory, 0);
-        let aim = Aim::through(&scene, DVec2::splat(0.5), || [0.0; 2]);
+        let aim = CameraSample::through(&scene, DVec2::splat(0.5), || [0.0; 2]);
         BidirectionalSampler::new(&scene).sample(&scene, aim, &mut rng, |path, _| {
             evaluate(path, &mut values);
             assert_eq!(values.len(), names.len(), "{}", path.class());

@@ -6,19 +6,18 @@
 
 use tests::Accumulator;
 
-use super::flow::Flows;
+use super::flow::{Flows, MIN_MOVES};
 use super::functionals;
 use crate::chain::acceptance;
 use crate::math::{Rng, Stream};
 use crate::mutation::{Proposal, Strategy};
 use crate::parallel;
-use crate::path::{Aim, BidirectionalSampler, ClassKey, Draft, Failure, Path};
+use crate::path::{BidirectionalSampler, CameraSample, ClassKey, Draft, Failure, Path};
 use crate::scene::{Scene, Tracer};
+use crate::target::Target;
 
 /// Samples that one stream of random numbers serves.
 const CHUNK: u64 = 500;
-/// A quantity is judged when at least this many proposals moved it each way.
-pub const MIN_MOVES: u64 = 200;
 /// A quantity is judged when its changes come from at least this many samples of equal weight: a
 /// mean of few heavy samples is not normally distributed.
 const MIN_EFFECTIVE: f64 = 100.0;
@@ -41,6 +40,16 @@ pub fn by_itself(
         let proposal = strategy.propose(scene, x, rng, draft, y)?;
         if strategy.applicable(y) { Ok(proposal) } else { Err(Failure::KindChanged) }
     }
+}
+
+/// What is put to the test: a way of proposing, and what its chain is to visit.
+#[derive(Clone, Copy)]
+#[expect(missing_debug_implementations, reason = "it holds a closure")]
+pub struct Walk<'a> {
+    /// The way of proposing, with ratios for the light alone.
+    pub propose: &'a Propose<'a>,
+    /// What the chain visits.
+    pub target: &'a Target,
 }
 
 /// How a law is put to the test.
@@ -161,7 +170,7 @@ impl Watched {
 /// Does one run; `on_chunk` hears how many samples a finished piece had.
 pub fn gather(
     scene: &Scene,
-    propose: &Propose<'_>,
+    walk: Walk<'_>,
     run: &Run,
     on_chunk: &(dyn Fn(u64) + Sync),
 ) -> Gathered {
@@ -171,7 +180,7 @@ pub fn gather(
         0..chunks,
         || Bench::new(scene),
         |bench, number| {
-            let part = bench.chunk(propose, run, number);
+            let part = bench.chunk(walk, run, number);
             on_chunk(CHUNK);
             part
         },
@@ -218,7 +227,7 @@ impl<'s> Bench<'s> {
         Self { scene, sampler, hand }
     }
 
-    fn chunk(&mut self, propose: &Propose<'_>, run: &Run, number: u64) -> Gathered {
+    fn chunk(&mut self, walk: Walk<'_>, run: &Run, number: u64) -> Gathered {
         let Self { scene, sampler, hand } = self;
         let mut gathered = Gathered { samples: CHUNK, ..Gathered::default() };
         let count = functionals::names().len();
@@ -230,11 +239,16 @@ impl<'s> Bench<'s> {
         let key = |index: u64| run.number << 44 | index << 1;
         let mut rng = Rng::new(run.seed, Stream::Verification, key(number));
         for sample in 0..CHUNK {
-            let aim = Aim::from_numbers(scene, &mut rng);
+            let aim = CameraSample::from_numbers(scene, &mut rng);
             hand.rng = Rng::new(run.seed, Stream::Verification, key(number * CHUNK + sample) | 1);
             hand.sums.fill(0.0);
             sampler.sample(scene, aim, &mut rng, |path, weight| {
-                hand.try_all(scene, (path, weight), propose, run.test, &mut gathered);
+                // Samples stand for the light, and with this factor for what the chain visits.
+                let weight = weight * walk.target.importance(path).rho;
+                if weight > 0.0 {
+                    let sample = Sample { path, weight };
+                    hand.try_all(scene, sample, walk, run.test, &mut gathered);
+                }
             });
             for (watched, &sum) in gathered.watched.iter_mut().zip(&hand.sums) {
                 watched.differences.push(sum);
@@ -246,19 +260,26 @@ impl<'s> Bench<'s> {
     }
 }
 
+/// A path that stands for so much of what the chain visits.
+#[derive(Clone, Copy)]
+struct Sample<'a> {
+    path: &'a Path,
+    weight: f64,
+}
+
 impl Hand {
     /// Mutates a path as often as the test asks, and takes note of where it goes.
     fn try_all(
         &mut self,
         scene: &Tracer<'_>,
-        (path, weight): (&Path, f64),
-        propose: &Propose<'_>,
+        Sample { path, weight }: Sample<'_>,
+        walk: Walk<'_>,
         test: Test,
         gathered: &mut Gathered,
     ) {
         self.before.clear();
         for _ in 0..test.repeats() {
-            let share = self.mutate(scene, path, propose, test, gathered);
+            let share = self.mutate(scene, path, walk, test, gathered);
             if share == 0.0 || *self.x == *path {
                 continue;
             }
@@ -275,18 +296,20 @@ impl Hand {
         &mut self,
         scene: &Tracer<'_>,
         path: &Path,
-        propose: &Propose<'_>,
+        walk: Walk<'_>,
         test: Test,
         gathered: &mut Gathered,
     ) -> f64 {
         let Self { rng, draft, x, y, .. } = self;
         (**x).clone_from(path);
+        let mut rho = walk.target.importance(x).rho;
         let mut share = 1.0 / test.repeats() as f64;
         for _ in 0..test.steps() {
             gathered.tries += 1;
-            let drawn = propose(scene, x, rng, draft, y);
-            let ratio = drawn.map_or(0.0, |proposal| proposal.ratio);
-            let a = acceptance(ratio);
+            let drawn = (walk.propose)(scene, x, rng, draft, y);
+            let (ratio, aim) = drawn
+                .map_or((0.0, rho), |proposal| (proposal.ratio, walk.target.importance(y).rho));
+            let a = acceptance(ratio * (aim / rho));
             gathered.not_finite += u64::from(a.is_none());
             // A chain refuses what is no number.
             let a = a.unwrap_or(0.0);
@@ -299,6 +322,7 @@ impl Hand {
                 }
             };
             if moves {
+                rho = aim;
                 std::mem::swap(x, y);
             }
         }

@@ -5,7 +5,7 @@ use tests::z_limit;
 
 use super::flow::Pair;
 use super::functionals;
-use super::invariance::{Gathered, Propose, Run, gather};
+use super::invariance::{Gathered, Run, Walk, gather};
 use crate::scene::Scene;
 
 /// A deviation above this calls for a second, larger run.
@@ -111,8 +111,8 @@ fn scores(gathered: &Gathered, law: Law) -> Vec<(Quantity, f64)> {
 pub struct Subject<'a> {
     /// The strategy's name.
     pub name: &'a str,
-    /// The strategy.
-    pub propose: &'a Propose<'a>,
+    /// The strategy, and what its chain is to visit.
+    pub walk: Walk<'a>,
     /// Findings of the whole check, among which the chance of a false alarm is shared.
     pub family: usize,
 }
@@ -127,13 +127,13 @@ pub fn examine(
     laws: &[(Law, &'static str)],
     on_samples: &(dyn Fn(u64) + Sync),
 ) -> (Vec<Finding>, Gathered) {
-    let first = gather(scene, subject.propose, run, on_samples);
+    let first = gather(scene, subject.walk, run, on_samples);
     let all: Vec<_> = laws.iter().map(|(law, _)| scores(&first, *law)).collect();
     let exceeds = |limit: f64| all.iter().flatten().any(|(_, z)| !(z.abs() <= limit));
     let second = (exceeds(SUSPICIOUS) && !exceeds(CERTAIN)).then(|| {
         // Its random numbers are others.
         let again = Run { samples: LARGER * run.samples, number: run.number | 1 << 12, ..*run };
-        gather(scene, subject.propose, &again, &|_| ())
+        gather(scene, subject.walk, &again, &|_| ())
     });
     let findings = laws.iter().zip(&all).map(|((law, name), scores)| {
         judge(subject, name, &first, scores, second.as_ref().map(|second| (second, *law)))

@@ -13,14 +13,15 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::Serialize;
 
-use crate::chain::EnsembleSettings;
+use crate::chain::{EnsembleSettings, Kernel};
 use crate::mutation::{
-    Independent, KINDS, Mixture, MixtureBasis, Mutation as _, Strategy, StrategyOptions, key_of,
+    Independent, KINDS, Mixture, MixtureBasis, Mutation as _, StrategyOptions, key_of,
 };
 use crate::scene::Scene;
+use crate::target::Target;
 use census::Census;
 use flow::Flows;
-use invariance::{Gathered, Run, Test, by_itself};
+use invariance::{Gathered, Run, Test, Walk, by_itself};
 use judge::{Law, Subject, examine};
 
 pub use ergodicity::ClassVisits;
@@ -139,8 +140,7 @@ pub fn verify(
             let share = (done as f64 + share) / parts as f64;
             on_progress(share, &format!("{}: {law}", strategy.name()));
         };
-        let family = LAWS * mixture.len() + 1;
-        let flows = verify_one(scene, (index, strategy), settings, family, &mut report, &progress);
+        let flows = verify_one(scene, &mixture, index, settings, &mut report, &progress);
         if strategy.name() != Independent::NAME {
             joined.merge(&flows.flows);
         }
@@ -150,7 +150,7 @@ pub fn verify(
         report.findings.push(ergodicity::connectedness(&census, &joined, samples));
         let (before, parts) = (wanted.len() as f64, parts as f64);
         let on_share = |share: f64, what: &str| on_progress((before + share) / parts, what);
-        verify_mixture(scene, (&census, &mixture), settings, &mut report, &on_share);
+        verify_mixture(scene, &census, &mixture, settings, &mut report, &on_share);
     }
     on_progress(1.0, "done");
     Ok(report)
@@ -175,7 +175,8 @@ fn empty_report(scene: &Scene, settings: &Settings, mixture: &Mixture) -> Report
 /// work done, from 0 to 2.
 fn verify_mixture(
     scene: &Scene,
-    (census, mixture): (&Census, &Mixture),
+    census: &Census,
+    mixture: &Mixture,
     settings: &Settings,
     report: &mut Report,
     on_share: &dyn Fn(f64, &str),
@@ -196,7 +197,8 @@ fn verify_mixture(
     report.findings.extend(findings);
     report.visits = visits;
     on_share(1.0, "chains from the rarest classes");
-    report.findings.push(ergodicity::from_the_rarest(scene, census, mixture, &plan));
+    let kernel = Kernel::whole(mixture.clone());
+    report.findings.push(ergodicity::from_the_rarest(scene, census, &kernel, &plan));
 }
 
 /// The mixture's strategies with the given names, or all of them.
@@ -211,18 +213,20 @@ fn select(mixture: &Mixture, names: &[String]) -> Result<Vec<usize>, VerifyError
     Ok(if names.is_empty() { (0..mixture.len()).collect() } else { found })
 }
 
-/// Puts one strategy to all tests, and adds what was found to the report.
+/// Puts one strategy of the mixture to all tests, and adds what was found to the report.
 fn verify_one(
     scene: &Scene,
-    (index, strategy): (usize, &Strategy),
+    mixture: &Mixture,
+    index: usize,
     settings: &Settings,
-    family: usize,
     report: &mut Report,
     on_progress: &(dyn Fn(f64, &str) + Sync),
 ) -> Gathered {
     let &Settings { samples, seed, threads, .. } = settings;
+    let (strategy, family) = (mixture.get(index), LAWS * mixture.len() + 1);
     let propose = by_itself(strategy);
-    let subject = Subject { name: strategy.name(), propose: &propose, family };
+    let walk = Walk { propose: &propose, target: &Target::Whole };
+    let subject = Subject { name: strategy.name(), walk, family };
     let drawn = AtomicU64::new(0);
     let listen = |law: &'static str| {
         let drawn = &drawn;

@@ -3,7 +3,7 @@
 use super::judge::{Finding, Verdict};
 use crate::math::{Rng, Stream};
 use crate::mutation::{Flaw, Inspection, Strategy};
-use crate::path::{Aim, BidirectionalSampler, Draft, Path};
+use crate::path::{BidirectionalSampler, CameraSample, Draft, Path};
 use crate::scene::{Scene, Tracer};
 
 /// How far the product of a ratio and that of the reverse move may be from one.
@@ -35,7 +35,7 @@ pub fn reversals(scene: &Scene, strategy: &Strategy, seed: u64, samples: u64) ->
     let (mut x, mut y): (Box<Path>, Box<Path>) = Default::default();
     let mut seen = Reversals::default();
     for _ in 0..samples {
-        let aim = Aim::from_numbers(&scene, &mut rng);
+        let aim = CameraSample::from_numbers(&scene, &mut rng);
         let mut paths = 0.0;
         sampler.sample(&scene, aim, &mut rng, |path, _| {
             // Each of the sample's paths to which the strategy applies, with equal chance.

@@ -8,10 +8,10 @@ use std::sync::Arc;
 
 use common::Rgb;
 use glam::{DVec3, Vec2, Vec3};
+use tracer_server::bsdf::{ColorInput, LambertDescription, MirrorDescription};
 use tracer_server::scene::load::load;
 use tracer_server::scene::{
-    BsdfDescription, Coding, ColorInput, Material, Mesh, Scene, SceneDescription, SceneFeatures,
-    Sphere, Texture,
+    Coding, Material, Mesh, Scene, SceneDescription, SceneFeatures, Sphere, Texture,
 };
 
 /// A name, and whether a scene has it.
@@ -42,7 +42,7 @@ pub(crate) fn cornell(side: u32, feature: Option<&str>) -> anyhow::Result<Scene>
     (description.width, description.height) = (side, side);
     let material = description.materials.len() as u16;
     let reflectance = ColorInput::Constant(Rgb::grey(0.5));
-    let mut hidden = Material::new("hidden", BsdfDescription::Lambert { reflectance });
+    let mut hidden = Material::new("hidden", LambertDescription { reflectance });
     let mut mesh = triangle(material);
     match feature {
         Some("spheres") => description.spheres.push(Sphere {
@@ -56,10 +56,10 @@ pub(crate) fn cornell(side: u32, feature: Option<&str>) -> anyhow::Result<Scene>
             mesh.texcoords = vec![[Vec2::ZERO, Vec2::X, Vec2::Y]];
             description.textures.push(checks());
             let reflectance = ColorInput::Texture { texture: 0, factor: Rgb::WHITE };
-            hidden.bsdf = BsdfDescription::Lambert { reflectance };
+            hidden.bsdf = LambertDescription { reflectance }.into();
         }
         Some("one-sided") => hidden.two_sided = false,
-        Some("specular") => hidden.bsdf = BsdfDescription::Mirror { reflectance: Rgb::WHITE },
+        Some("specular") => hidden.bsdf = MirrorDescription { reflectance: Rgb::WHITE }.into(),
         _ => {}
     }
     add(&mut description, hidden, mesh);

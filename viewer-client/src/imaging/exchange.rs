@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use host::file::{FileError, Place};
-use host::picture::{self, Picture, PictureError};
+use host::picture::{self, Extras, Picture, PictureError};
 use thiserror::Error;
 
 use super::Reference;
@@ -51,8 +51,9 @@ pub fn save(
             let pixel = |x, y| film.pixel(x, y).unwrap_or_default();
             let metadata: Vec<_> =
                 metadata.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect();
+            let extras = Extras { metadata: &metadata, ..Extras::default() };
             Place::find(file)?.write(|output| {
-                let written = picture::write_exr(output, [width, height], pixel, &metadata);
+                let written = picture::write_exr(output, [width, height], pixel, &extras);
                 written.map_err(|error| ExchangeError::Exr(name, error))
             })
         }

@@ -12,8 +12,8 @@ use exr::image::read::specific_channels::ReadSpecificChannel as _;
 use exr::meta::MetaData;
 use exr::meta::header::Header;
 use exr::prelude::{
-    AttributeValue, Encoding, Image, IntegerBounds, Layer, LayerAttributes, ReadChannels,
-    ReadLayers as _, SpecificChannels, Text, Vec2, WritableImage as _, read,
+    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, IntegerBounds, Layer,
+    LayerAttributes, ReadChannels, ReadLayers as _, Text, Vec2, WritableImage as _, read,
 };
 use thiserror::Error;
 
@@ -175,18 +175,45 @@ impl<'s, C: ReadChannels<'s>> ReadChannels<'s> for OfPart<'_, C> {
     }
 }
 
-/// Writes a picture of `size` pixels whose radiance `pixel` tells, with `metadata` in the header.
+/// One more number for every pixel of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plane {
+    /// Its name, such as `error`: the channel is `error.Y`.
+    pub name: &'static str,
+    /// Row by row from the top.
+    pub values: Vec<f32>,
+}
+
+/// What a file holds beside the picture.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Extras<'a> {
+    /// Channels of their own.
+    pub planes: &'a [Plane],
+    /// Words and what they mean, in the header.
+    pub metadata: &'a [(String, String)],
+}
+
+/// Writes a picture of `size` pixels whose radiance `pixel` tells.
 pub fn write_exr(
     output: &mut Output,
     [width, height]: [usize; 2],
-    pixel: impl Fn(usize, usize) -> [f32; 3] + Sync,
-    metadata: &[(String, String)],
+    pixel: impl Fn(usize, usize) -> [f32; 3],
+    extras: &Extras<'_>,
 ) -> UnitResult {
-    let channels =
-        SpecificChannels::rgb(|Vec2(x, y): Vec2<usize>| <(f32, f32, f32)>::from(pixel(x, y)));
+    let places = || (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let color = |(index, name): (usize, &str)| {
+        let values = places().map(|(x, y)| pixel(x, y)[index]).collect();
+        AnyChannel::new(name, FlatSamples::F32(values))
+    };
+    let plane = |plane: &Plane| {
+        let name = format!("{}.Y", plane.name);
+        AnyChannel::new(name.as_str(), FlatSamples::F32(plane.values.clone()))
+    };
+    let colors = ["R", "G", "B"].into_iter().enumerate().map(color);
+    let channels = AnyChannels::sort(colors.chain(extras.planes.iter().map(plane)).collect());
     let mut attributes = LayerAttributes::named("");
     attributes.software_name = Some(text("Lvis"));
-    for (key, value) in metadata {
+    for (key, value) in extras.metadata {
         attributes.other.insert(text(key), AttributeValue::Text(text(value)));
     }
     let layer = Layer::new(Vec2(width, height), attributes, Encoding::SMALL_LOSSLESS, channels);

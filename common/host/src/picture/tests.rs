@@ -208,7 +208,13 @@ fn what_is_written_is_read_whatever_it_is_called() {
         Place::find(&path)
             .expect("a place")
             .write(|output| -> Result<(), FileError> {
-                write_exr(output, [SIZE.0, SIZE.1], pixel, &metadata).expect("room");
+                write_exr(
+                    output,
+                    [SIZE.0, SIZE.1],
+                    pixel,
+                    &Extras { metadata: &metadata, ..Extras::default() },
+                )
+                .expect("room");
                 output.flush().expect("room");
                 Ok(())
             })

@@ -13,7 +13,7 @@ pub use chain::{Balance, PrimaryChain, STEPS};
 pub use coordinates::{Draws, LazyPoint, Place, Point, Start};
 pub use sampler::{PrimarySampler, Sample, Sampler, SceneSampler};
 
-use crate::chain::{BootstrapSettings, ChainStatistics, EnsembleSettings, LANES, Pool};
+use crate::chain::{ChainStatistics, EnsembleSettings, LANES, Pool};
 use crate::film::Film;
 use crate::math::{Rng, Stream, TorusStep};
 use crate::parallel::{self, Stop};
@@ -73,13 +73,14 @@ impl PrimaryEnsemble {
         on_progress: impl FnMut(u64),
     ) -> Self {
         let seed = ensemble.seed;
-        let pool = Pool::new(
-            &BootstrapSettings::from(ensemble),
+        let weigh = |(sampler, sample): &mut (SceneSampler<'_>, Sample), number| {
+            sampler.sample(&mut Rng::new(seed, Stream::Bootstrap, number), sample);
+            if sample.is_physical() { sample.intensity() } else { 0.0 }
+        };
+        let pool = Pool::gather(
+            (ensemble.bootstrap_samples, ensemble.threads),
             || (SceneSampler::new(scene, settings.sampler), Sample::default()),
-            |(sampler, sample), number| {
-                sampler.sample(&mut Rng::new(seed, Stream::Bootstrap, number), sample);
-                if sample.is_physical() { sample.intensity() } else { 0.0 }
-            },
+            |state, numbers| numbers.map(|number| weigh(state, number)).collect(),
             stop,
             on_progress,
         );

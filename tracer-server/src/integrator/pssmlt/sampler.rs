@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::super::path_tracer::radiance;
 use crate::film::Film;
-use crate::path::{Aim, BidirectionalSampler, Numbers};
+use crate::path::{BidirectionalSampler, CameraSample, Numbers};
 use crate::scene::{Scene, Tracer};
 
 /// Which renderer a chain in primary-sample space drives.
@@ -117,7 +117,7 @@ impl Sampler for SceneSampler<'_> {
     fn sample(&mut self, numbers: &mut impl Numbers, sample: &mut Sample) {
         sample.clear();
         let Self { scene, walks } = self;
-        let aim = Aim::from_numbers(scene, numbers);
+        let aim = CameraSample::from_numbers(scene, numbers);
         if let Some(walks) = walks {
             walks.sample(scene, aim, numbers, |path, weight| {
                 sample.add(path.pixel(), path.unit_color() * weight);

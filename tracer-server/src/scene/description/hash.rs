@@ -1,10 +1,10 @@
 //! A digest of a scene's content: the key under which viewers cache its geometry.
 
+use common::Rgb;
 use glam::DVec3;
 
-use super::{BsdfDescription, ColorInput, Glow, NumberInput, SceneDescription};
-use crate::bsdf::Fresnel;
-use common::Rgb;
+use super::{LightKind, SceneDescription};
+use crate::bsdf::{BsdfDescription, ColorInput, NumberInput, Value};
 
 /// Hex digest of everything that the picture depends on, names included.
 pub(crate) fn digest(description: &SceneDescription) -> String {
@@ -15,7 +15,7 @@ pub(crate) fn digest(description: &SceneDescription) -> String {
         h.text(&material.name);
         h.color(material.emission);
         h.0.update(&[u8::from(material.two_sided)]);
-        h.bsdf(&material.bsdf);
+        h.bsdf(material.bsdf);
     }
     for mesh in &description.meshes {
         h.text(&mesh.name);
@@ -43,7 +43,7 @@ pub(crate) fn digest(description: &SceneDescription) -> String {
     }
     for light in &description.lights {
         h.text(&light.name);
-        h.glow(&light.glow);
+        h.kind(&light.kind);
     }
     h.0.finalize().to_hex()[..32].to_owned()
 }
@@ -89,18 +89,26 @@ impl Digest {
         }
     }
 
-    fn glow(&mut self, glow: &Glow) {
-        self.color(glow.color());
-        match glow {
-            Glow::Point { position, .. } => self.point(*position),
-            Glow::Spot { position, direction, cutoff, beam, .. } => {
+    fn kind(&mut self, kind: &LightKind) {
+        self.color(kind.color());
+        match kind {
+            LightKind::Point { position, .. } => {
+                self.text("point");
+                self.point(*position);
+            }
+            LightKind::Spot { position, direction, cutoff, beam, .. } => {
+                self.text("spot");
                 self.point(*position);
                 self.point(*direction);
                 self.number(*cutoff);
                 self.number(*beam);
             }
-            Glow::Directional { direction, .. } => self.point(*direction),
-            Glow::Environment { image, rotation, .. } => {
+            LightKind::Directional { direction, .. } => {
+                self.text("directional");
+                self.point(*direction);
+            }
+            LightKind::Environment { image, rotation, .. } => {
+                self.text("environment");
                 rotation.to_cols_array().into_iter().for_each(|x| self.number(x));
                 if let Some(image) = image {
                     self.count(image.width);
@@ -111,91 +119,25 @@ impl Digest {
         }
     }
 
-    fn color_input(&mut self, input: ColorInput) {
-        match input {
-            ColorInput::Constant(color) => {
-                self.count(0);
-                self.color(color);
+    /// Every parameter under its name, so that no two models are taken for each other.
+    fn bsdf(&mut self, mut bsdf: BsdfDescription) {
+        self.text(bsdf.name());
+        bsdf.parameters(&mut |name, mut value| {
+            self.text(name);
+            self.count(value.texture().map_or(0, |texture| 1 + usize::from(*texture)));
+            match value {
+                Value::Share(color)
+                | Value::Indices(color)
+                | Value::ShareInput(
+                    ColorInput::Constant(color) | ColorInput::Texture { factor: color, .. },
+                ) => self.color(*color),
+                Value::Number(number, _)
+                | Value::NumberInput(
+                    NumberInput::Constant(number) | NumberInput::Texture { factor: number, .. },
+                    _,
+                ) => self.number(*number),
+                Value::Flag(flag) => self.count(usize::from(*flag)),
             }
-            ColorInput::Texture { texture, factor } => {
-                self.count(1 + usize::from(texture));
-                self.color(factor);
-            }
-        }
-    }
-
-    fn number_input(&mut self, input: NumberInput) {
-        match input {
-            NumberInput::Constant(number) => {
-                self.count(0);
-                self.number(number);
-            }
-            NumberInput::Texture { texture, factor } => {
-                self.count(1 + usize::from(texture));
-                self.number(factor);
-            }
-        }
-    }
-
-    fn fresnel(&mut self, fresnel: Fresnel) {
-        match fresnel {
-            Fresnel::Constant(color) => {
-                self.count(0);
-                self.color(color);
-            }
-            Fresnel::Schlick(color) => {
-                self.count(1);
-                self.color(color);
-            }
-            Fresnel::Conductor { eta, k, tint } => {
-                self.count(2);
-                self.color(eta);
-                self.color(k);
-                self.color(tint);
-            }
-            Fresnel::Dielectric { eta, tint } => {
-                self.count(3);
-                self.number(eta);
-                self.color(tint);
-            }
-        }
-    }
-
-    fn bsdf(&mut self, bsdf: &BsdfDescription) {
-        match *bsdf {
-            BsdfDescription::Lambert { reflectance } => {
-                self.count(0);
-                self.color_input(reflectance);
-            }
-            BsdfDescription::Mirror { reflectance } => {
-                self.count(1);
-                self.color(reflectance);
-            }
-            BsdfDescription::Dielectric { eta, reflectance, transmittance } => {
-                self.count(2);
-                self.number(eta);
-                self.color(reflectance);
-                self.color(transmittance);
-            }
-            BsdfDescription::RoughDielectric { eta, reflectance, transmittance, roughness } => {
-                self.count(3);
-                self.number(eta);
-                self.color(reflectance);
-                self.color(transmittance);
-                self.number_input(roughness);
-            }
-            BsdfDescription::Conductor { fresnel, roughness } => {
-                self.count(4);
-                self.fresnel(fresnel);
-                self.number_input(roughness);
-            }
-            BsdfDescription::Plastic { diffuse, fresnel, roughness, nonlinear } => {
-                self.count(5);
-                self.color_input(diffuse);
-                self.fresnel(fresnel);
-                self.number(roughness);
-                self.count(usize::from(nonlinear));
-            }
-        }
+        });
     }
 }

@@ -9,12 +9,12 @@ pub struct LightDescription {
     /// The name in the scene file.
     pub name: String,
     /// What it is.
-    pub glow: Glow,
+    pub kind: LightKind,
 }
 
 /// The kinds of lights without a surface.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Glow {
+pub enum LightKind {
     /// Shines equally in all directions.
     Point {
         /// Where.
@@ -54,7 +54,7 @@ pub enum Glow {
     },
 }
 
-impl Glow {
+impl LightKind {
     /// What it emits, as its file tells it.
     pub fn color(&self) -> Rgb {
         match *self {

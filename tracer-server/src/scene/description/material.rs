@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use common::Rgb;
 
-use crate::bsdf::Fresnel;
+use crate::bsdf::BsdfDescription;
 
 /// How a surface scatters and emits.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,119 +22,8 @@ pub struct Material {
 
 impl Material {
     /// A two-sided material that emits nothing.
-    pub fn new(name: impl Into<String>, bsdf: BsdfDescription) -> Self {
-        Self { name: name.into(), bsdf, two_sided: true, emission: Rgb::BLACK }
-    }
-}
-
-/// The parameters of a scattering model.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum BsdfDescription {
-    /// Ideal diffuse reflection.
-    Lambert {
-        /// Albedo, each channel in [0, 1].
-        reflectance: ColorInput,
-    },
-    /// Ideal mirror.
-    Mirror {
-        /// Reflectance at every angle, each channel in [0, 1].
-        reflectance: Rgb,
-    },
-    /// A smooth boundary between two transparent media.
-    Dielectric {
-        /// Index of refraction behind the surface over the one in front of it.
-        eta: f64,
-        /// Tint of reflected light, each channel in [0, 1].
-        reflectance: Rgb,
-        /// Tint of refracted light, each channel in [0, 1].
-        transmittance: Rgb,
-    },
-    /// A rough boundary between two transparent media.
-    RoughDielectric {
-        /// Index of refraction behind the surface over the one in front of it.
-        eta: f64,
-        /// Tint of reflected light, each channel in [0, 1].
-        reflectance: Rgb,
-        /// Tint of refracted light, each channel in [0, 1].
-        transmittance: Rgb,
-        /// Roughness of the facets: alpha of GGX, in [0, 1].
-        roughness: NumberInput,
-    },
-    /// A metal.
-    Conductor {
-        /// What it, or a facet of it, reflects.
-        fresnel: Fresnel,
-        /// Roughness of the facets: alpha of GGX, in [0, 1]; 0 is a mirror.
-        roughness: NumberInput,
-    },
-    /// Diffuse paint under a transparent coat.
-    Plastic {
-        /// Albedo of the base, each channel in [0, 1].
-        diffuse: ColorInput,
-        /// What the coat, or a facet of it, reflects.
-        fresnel: Fresnel,
-        /// Roughness of the coat: alpha of GGX, in [0, 1]; 0 is smooth.
-        roughness: f64,
-        /// True when light that goes to and fro between a dielectric coat and the base takes on
-        /// its colour each time, false when `diffuse` is the colour as seen through the coat.
-        nonlinear: bool,
-    },
-}
-
-impl BsdfDescription {
-    /// The same model reading textures that are `by` places further on in the list.
-    #[must_use]
-    pub fn with_textures_after(mut self, by: u16) -> Self {
-        match &mut self {
-            Self::Lambert { reflectance: ColorInput::Texture { texture, .. } }
-            | Self::Plastic { diffuse: ColorInput::Texture { texture, .. }, .. }
-            | Self::Conductor { roughness: NumberInput::Texture { texture, .. }, .. }
-            | Self::RoughDielectric { roughness: NumberInput::Texture { texture, .. }, .. } => {
-                *texture = texture.saturating_add(by);
-            }
-            _ => {}
-        }
-        self
-    }
-}
-
-/// A number that is the same everywhere, or read from a texture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NumberInput {
-    /// The same everywhere.
-    Constant(f64),
-    /// The texture's luminance times a factor.
-    Texture {
-        /// Index into the scene's textures.
-        texture: u16,
-        /// What it is multiplied by.
-        factor: f64,
-    },
-}
-
-impl From<f64> for NumberInput {
-    fn from(number: f64) -> Self {
-        Self::Constant(number)
-    }
-}
-
-/// A colour that is the same everywhere, or read from a texture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ColorInput {
-    /// The same everywhere.
-    Constant(Rgb),
-    /// The texture's colour times a factor.
-    Texture {
-        /// Index into the scene's textures.
-        texture: u16,
-        /// What each channel is multiplied by, in [0, 1].
-        factor: Rgb,
-    },
-}
-
-impl From<Rgb> for ColorInput {
-    fn from(color: Rgb) -> Self {
-        Self::Constant(color)
+    pub fn new(name: impl Into<String>, bsdf: impl Into<BsdfDescription>) -> Self {
+        Self { name: name.into(), bsdf: bsdf.into(), two_sided: true, emission: Rgb::BLACK }
     }
 }
 

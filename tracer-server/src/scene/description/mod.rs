@@ -7,15 +7,16 @@ mod hash;
 mod light;
 mod material;
 
-use common::{CameraPose, Rgb};
+use common::{CameraPose, MAX_VERTICES, Rgb};
 use glam::{DVec3, Vec2, Vec3};
 
+use crate::bsdf::{ColorInput, Inputs, NumberInput};
 pub(crate) use hash::digest;
-pub use light::{Glow, LightDescription, SkyImage};
-pub use material::{BsdfDescription, Coding, ColorInput, Material, NumberInput, Texture};
+pub use light::{LightDescription, LightKind, SkyImage};
+pub use material::{Coding, Material, Texture};
 
 /// Longest path that any scene may ask for, in edges.
-pub const MAX_EDGES: usize = 64;
+pub const MAX_EDGES: usize = MAX_VERTICES - 1;
 
 /// A whole scene in the units of its file.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,10 +67,12 @@ impl SceneDescription {
             lens: None,
         }
     }
+}
 
-    /// The colour of an input on the average over its texture; black where there is no such
-    /// texture.
-    pub fn mean_color(&self, input: ColorInput) -> Rgb {
+/// Inputs on the average over their textures.
+impl Inputs for SceneDescription {
+    /// Black where there is no such texture.
+    fn color(&self, input: ColorInput) -> Rgb {
         match input {
             ColorInput::Constant(color) => color,
             ColorInput::Texture { texture, factor } => {
@@ -79,13 +82,13 @@ impl SceneDescription {
         }
     }
 
-    /// The number of an input on the average over its texture; zero where there is no such texture.
-    pub fn mean_number(&self, input: NumberInput) -> f64 {
+    /// Zero where there is no such texture.
+    fn number(&self, input: NumberInput) -> f64 {
         match input {
             NumberInput::Constant(number) => number,
             NumberInput::Texture { texture, factor } => {
                 let factor = Rgb::grey(factor);
-                self.mean_color(ColorInput::Texture { texture, factor }).luminance()
+                self.color(ColorInput::Texture { texture, factor }).luminance()
             }
         }
     }

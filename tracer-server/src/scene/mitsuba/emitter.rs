@@ -4,7 +4,7 @@ use common::Rgb;
 use glam::{DMat3, DVec3};
 
 use super::document::Element;
-use crate::scene::description::{Glow, LightDescription};
+use crate::scene::description::{LightDescription, LightKind};
 use crate::scene::reading::diagnostic::{LoadError, Warning};
 use crate::scene::reading::image::read_sky;
 
@@ -19,15 +19,15 @@ pub(super) fn read(
     let to_world = emitter.transform("to_world")?;
     let (place, ahead) =
         (to_world.transform_point3(DVec3::ZERO), to_world.transform_vector3(DVec3::Z));
-    let glow = match emitter.plugin()?.as_str() {
-        "point" => Glow::Point {
+    let kind = match emitter.plugin()?.as_str() {
+        "point" => LightKind::Point {
             position: emitter.point("position")?.unwrap_or(place),
             intensity: color(emitter, "intensity")?,
         },
         "spot" => {
             warnings.push(emitter.warning("its rim falls off smoothly in the cosine of the angle"));
             let cutoff = emitter.number("cutoff_angle")?.unwrap_or(DEFAULT_CUTOFF);
-            Glow::Spot {
+            LightKind::Spot {
                 position: place,
                 direction: ahead,
                 intensity: color(emitter, "intensity")?,
@@ -35,11 +35,11 @@ pub(super) fn read(
                 beam: emitter.number("beam_width")?.unwrap_or(0.75 * cutoff),
             }
         }
-        "directional" => Glow::Directional {
+        "directional" => LightKind::Directional {
             direction: emitter.point("direction")?.unwrap_or(ahead),
             irradiance: color(emitter, "irradiance")?,
         },
-        "constant" => Glow::Environment {
+        "constant" => LightKind::Environment {
             radiance: color(emitter, "radiance")?,
             image: None,
             rotation: DMat3::IDENTITY,
@@ -52,7 +52,7 @@ pub(super) fn read(
             return Ok(None);
         }
     };
-    Ok(Some(LightDescription { name: emitter.label(), glow }))
+    Ok(Some(LightDescription { name: emitter.label(), kind }))
 }
 
 /// A colour; one where it is absent.
@@ -61,7 +61,7 @@ fn color(emitter: Element<'_>, name: &str) -> Result<Rgb, LoadError> {
 }
 
 /// An image around the scene. The renderer's images have the axes that ours have.
-fn image(emitter: Element<'_>, rotation: DMat3) -> Result<Glow, LoadError> {
+fn image(emitter: Element<'_>, rotation: DMat3) -> Result<LightKind, LoadError> {
     let name = emitter.string("filename")?.ok_or_else(|| {
         emitter.error("the parameter `filename` is missing: the file with the image")
     })?;
@@ -72,5 +72,5 @@ fn image(emitter: Element<'_>, rotation: DMat3) -> Result<Glow, LoadError> {
     }
     let image = read_sky(&emitter.file(&name)).map_err(|message| emitter.error(message))?;
     let radiance = Rgb::grey(emitter.number("scale")?.unwrap_or(1.0));
-    Ok(Glow::Environment { radiance, image: Some(image), rotation })
+    Ok(LightKind::Environment { radiance, image: Some(image), rotation })
 }

@@ -7,7 +7,7 @@ use common::Rgb;
 use super::bsdf;
 use super::document::Element;
 use super::texture::Textures;
-use crate::scene::description::{BsdfDescription, Material};
+use crate::scene::description::Material;
 use crate::scene::reading::diagnostic::{LoadError, Place};
 
 /// Materials read so far.
@@ -70,10 +70,7 @@ impl Palette {
     ) -> Result<Option<u16>, LoadError> {
         let material = self.materials.get(usize::from(index)).cloned();
         let Some(Material { name, bsdf, two_sided, emission }) = material else { return Ok(None) };
-        let BsdfDescription::Dielectric { eta, reflectance, transmittance } = bsdf else {
-            return Ok(None);
-        };
-        let bsdf = BsdfDescription::Dielectric { eta: 1.0 / eta, reflectance, transmittance };
+        let Some(bsdf) = bsdf.inside_out() else { return Ok(None) };
         let name = format!("{name}, inside out");
         self.add(Material { name, bsdf, two_sided, emission }, place).map(Some)
     }

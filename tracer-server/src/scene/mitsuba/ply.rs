@@ -93,7 +93,14 @@ fn scalar(property: &Property) -> Option<f64> {
         Property::UInt(value) => Some(f64::from(value)),
         Property::Float(value) => Some(f64::from(value)),
         Property::Double(value) => Some(value),
-        _ => None,
+        Property::ListChar(_)
+        | Property::ListUChar(_)
+        | Property::ListShort(_)
+        | Property::ListUShort(_)
+        | Property::ListInt(_)
+        | Property::ListUInt(_)
+        | Property::ListFloat(_)
+        | Property::ListDouble(_) => None,
     }
 }
 

@@ -127,9 +127,9 @@ fn file(element: Element<'_>, format: &str, shape: &mut Shape) -> Result<Vec<Mes
         shape.name = stem.to_string_lossy().into_owned();
     }
     let meshes = if format == "obj" { read_obj(&path, shape) } else { Ok(vec![ply::read(&path)?]) };
-    let mut meshes = meshes.map_err(|error| match error {
-        LoadError::Unreadable { .. } => element.error(error.to_string()),
-        other => other,
+    let mut meshes = meshes.map_err(|error| {
+        let is_unreadable = matches!(error, LoadError::Unreadable { .. });
+        if is_unreadable { element.error(error.to_string()) } else { error }
     })?;
     // Images of OBJ files stand upright; those of the renderer's own have v pointing down.
     let upright = element.boolean("flip_tex_coords")?.unwrap_or(format == "obj");

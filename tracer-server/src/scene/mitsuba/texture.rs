@@ -6,7 +6,8 @@ use common::Rgb;
 use glam::DMat4;
 
 use super::document::Element;
-use crate::scene::description::{Coding, ColorInput, Texture};
+use crate::bsdf::ColorInput;
+use crate::scene::description::{Coding, Texture};
 use crate::scene::reading::diagnostic::{LoadError, Warning};
 use crate::scene::reading::image::read_texture;
 

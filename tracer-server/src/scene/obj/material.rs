@@ -2,8 +2,11 @@
 
 use common::Rgb;
 
-use crate::bsdf::Fresnel;
-use crate::scene::description::{BsdfDescription, ColorInput, Material, NumberInput};
+use crate::bsdf::{
+    BsdfDescription, ColorInput, ConductorDescription, DielectricDescription, Fresnel,
+    LambertDescription, MirrorDescription, NumberInput, PlasticDescription,
+};
+use crate::scene::description::Material;
 
 /// A texture that a material reads.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,15 +138,7 @@ impl MtlEntry {
         };
         // The Fresnel equations say how much a smooth boundary reflects; Ks does not enter.
         let roughness = self.roughness_input(self.roughness.unwrap_or(0.0).clamp(0.0, 1.0), notes);
-        match roughness {
-            NumberInput::Texture { .. } | NumberInput::Constant(f64::MIN_POSITIVE..) => {
-                let reflectance = Rgb::WHITE;
-                BsdfDescription::RoughDielectric { eta, reflectance, transmittance, roughness }
-            }
-            NumberInput::Constant(_) => {
-                BsdfDescription::Dielectric { eta, reflectance: Rgb::WHITE, transmittance }
-            }
-        }
+        DielectricDescription { eta, reflectance: Rgb::WHITE, transmittance, roughness }.into()
     }
 
     fn opaque(&self, emission: Rgb, notes: &mut Vec<String>) -> BsdfDescription {
@@ -157,7 +152,7 @@ impl MtlEntry {
         let lobe = if is_metal && specular.is_black() { diffuse } else { specular };
         if lobe.is_black() {
             let reflectance = self.color_input(diffuse, notes);
-            return BsdfDescription::Lambert { reflectance };
+            return LambertDescription { reflectance }.into();
         }
         let lobe = within("Ks", lobe, 1.0, notes);
         let roughness = self.lobe_roughness();
@@ -177,19 +172,20 @@ impl MtlEntry {
             (true, Fresnel::Constant(reflectance))
                 if roughness == 0.0 && self.roughness_map.is_none() =>
             {
-                BsdfDescription::Mirror { reflectance }
+                MirrorDescription { reflectance }.into()
             }
             (true, _) => {
                 let fresnel = if is_metal { Fresnel::Schlick(lobe) } else { fresnel };
                 let roughness = self.roughness_input(roughness, notes);
-                BsdfDescription::Conductor { fresnel, roughness }
+                ConductorDescription { fresnel, roughness }.into()
             }
-            (false, _) => BsdfDescription::Plastic {
+            (false, _) => PlasticDescription {
                 diffuse: self.color_input(diffuse, notes),
                 fresnel,
                 roughness: self.mean_roughness(roughness, notes),
                 nonlinear: false,
-            },
+            }
+            .into(),
         }
     }
 
@@ -314,7 +310,8 @@ mod tests {
             illumination: Some(2),
             ..MtlEntry::default()
         };
-        let expected = BsdfDescription::Lambert { reflectance: Rgb::grey(0.7).into() };
+        let expected =
+            BsdfDescription::Lambert(LambertDescription { reflectance: Rgb::grey(0.7).into() });
         assert_eq!(bsdf(&matt), (expected, 0));
 
         let glass = MtlEntry {
@@ -326,11 +323,7 @@ mod tests {
             illumination: Some(7),
             ..MtlEntry::default()
         };
-        let expected = BsdfDescription::Dielectric {
-            eta: 1.5,
-            reflectance: Rgb::WHITE,
-            transmittance: Rgb::WHITE,
-        };
+        let expected = BsdfDescription::from(DielectricDescription::clear(1.5));
         assert_eq!(bsdf(&glass), (expected, 0));
 
         let mirror = MtlEntry {
@@ -340,7 +333,10 @@ mod tests {
             shininess: Some(1000.0),
             ..MtlEntry::default()
         };
-        assert_eq!(bsdf(&mirror), (BsdfDescription::Mirror { reflectance: Rgb::grey(0.9) }, 0));
+        assert_eq!(
+            bsdf(&mirror),
+            (BsdfDescription::Mirror(MirrorDescription { reflectance: Rgb::grey(0.9) }), 0)
+        );
     }
 
     #[test]
@@ -353,12 +349,12 @@ mod tests {
             illumination: Some(2),
             ..MtlEntry::default()
         };
-        assert!(matches!(bsdf(&light).0, BsdfDescription::Lambert { .. }), "illum 2 is opaque");
+        assert!(matches!(bsdf(&light).0, BsdfDescription::Lambert(_)), "illum 2 is opaque");
         let clear = MtlEntry { opacity: Some(0.1), ..light.clone() };
-        assert!(matches!(bsdf(&clear).0, BsdfDescription::Dielectric { .. }), "d 0.1 is glass");
+        assert!(matches!(bsdf(&clear).0, BsdfDescription::Dielectric(_)), "d 0.1 is glass");
         let faint = MtlEntry { opacity: Some(0.9), ..light };
         let (model, notes) = bsdf(&faint);
-        assert!(matches!(model, BsdfDescription::Lambert { .. }) && notes == 1, "d 0.9 is told");
+        assert!(matches!(model, BsdfDescription::Lambert(_)) && notes == 1, "d 0.9 is told");
     }
 
     #[test]
@@ -369,7 +365,9 @@ mod tests {
             illumination: Some(7),
             ..MtlEntry::default()
         };
-        let BsdfDescription::Dielectric { transmittance, .. } = bsdf(&water).0 else {
+        let BsdfDescription::Dielectric(DielectricDescription { transmittance, .. }) =
+            bsdf(&water).0
+        else {
             panic!("water is transparent");
         };
         assert_eq!(transmittance, Rgb::new(0.9, 0.9, 1.0));
@@ -387,7 +385,8 @@ mod tests {
             ..MtlEntry::default()
         };
         let fresnel = Fresnel::Schlick(Rgb::grey(0.9));
-        let brushed = BsdfDescription::Conductor { fresnel, roughness: 0.25.into() };
+        let brushed =
+            BsdfDescription::Conductor(ConductorDescription { fresnel, roughness: 0.25.into() });
         assert_eq!(bsdf(&metal(0.25)), (brushed, 0));
         let phong = MtlEntry {
             diffuse: Some(Rgb::grey(0.5)),
@@ -396,12 +395,12 @@ mod tests {
             illumination: Some(2),
             ..MtlEntry::default()
         };
-        let lacquer = BsdfDescription::Plastic {
+        let lacquer = BsdfDescription::Plastic(PlasticDescription {
             diffuse: Rgb::grey(0.5).into(),
             fresnel: Fresnel::Schlick(Rgb::grey(0.8)),
             roughness: 0.1,
             nonlinear: false,
-        };
+        });
         assert_eq!(bsdf(&phong), (lacquer, 0));
     }
 
@@ -415,7 +414,7 @@ mod tests {
             illumination: Some(2),
             ..MtlEntry::default()
         };
-        let (BsdfDescription::Plastic { fresnel, .. }, 0) = bsdf(&wood) else {
+        let (BsdfDescription::Plastic(PlasticDescription { fresnel, .. }), 0) = bsdf(&wood) else {
             panic!("a coat over a base");
         };
         assert_eq!(fresnel, Fresnel::Dielectric { eta: 1.5, tint: Rgb::WHITE });
@@ -425,8 +424,9 @@ mod tests {
             illumination: Some(7),
             ..MtlEntry::default()
         };
-        let rough = matches!(bsdf(&frosted), (BsdfDescription::RoughDielectric { .. }, 0));
-        assert!(rough, "frosted glass");
+        let expected =
+            DielectricDescription { roughness: 0.3.into(), ..DielectricDescription::clear(1.5) };
+        assert_eq!(bsdf(&frosted), (expected.into(), 0), "frosted glass");
     }
 
     #[test]
@@ -437,27 +437,36 @@ mod tests {
             ..MtlEntry::default()
         };
         let reflectance = ColorInput::Texture { texture: 3, factor: Rgb::grey(0.5) };
-        assert_eq!(bsdf(&painted), (BsdfDescription::Lambert { reflectance }, 0));
+        assert_eq!(
+            bsdf(&painted),
+            (BsdfDescription::Lambert(LambertDescription { reflectance }), 0)
+        );
         let worn = MtlEntry {
             specular: Some(Rgb::grey(0.9)),
             metallic: Some(1.0),
             roughness_map: Some(Ok(Mapped { texture: 1, mean: Rgb::grey(0.3) })),
             ..MtlEntry::default()
         };
-        let (BsdfDescription::Conductor { roughness, .. }, 0) = bsdf(&worn) else {
+        let (BsdfDescription::Conductor(ConductorDescription { roughness, .. }), 0) = bsdf(&worn)
+        else {
             panic!("a metal");
         };
         assert_eq!(roughness, NumberInput::Texture { texture: 1, factor: 1.0 });
         let lost = MtlEntry { diffuse_map: Some(Err("a.png: gone".into())), ..MtlEntry::default() };
         let (material, notes) = lost.to_material();
-        assert_eq!(material.bsdf, BsdfDescription::Lambert { reflectance: Rgb::grey(0.5).into() });
+        assert_eq!(
+            material.bsdf,
+            BsdfDescription::Lambert(LambertDescription { reflectance: Rgb::grey(0.5).into() })
+        );
         assert!(notes[0].contains("a.png: gone"), "{notes:?}");
     }
 
     #[test]
     fn more_than_all_light_is_scaled_down() {
         let entry = MtlEntry { diffuse: Some(Rgb::new(2.0, 1.0, 0.0)), ..MtlEntry::default() };
-        let expected = BsdfDescription::Lambert { reflectance: Rgb::new(1.0, 0.5, 0.0).into() };
+        let expected = BsdfDescription::Lambert(LambertDescription {
+            reflectance: Rgb::new(1.0, 0.5, 0.0).into(),
+        });
         assert_eq!(bsdf(&entry), (expected, 1));
     }
 }

@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 use common::Rgb;
 use glam::{DVec3, Vec2, Vec3};
 
-use crate::scene::description::{BsdfDescription, Coding, Material, Mesh, Texture};
+use crate::bsdf::LambertDescription;
+use crate::scene::description::{Coding, Material, Mesh, Texture};
 use crate::scene::reading::diagnostic::{LoadError, Place, Warning};
 use crate::scene::reading::image::read_texture;
 use crate::scene::reading::text::{read_lossy, without_comment};
@@ -254,7 +255,7 @@ fn add_meshes(
     let grey = scene.materials.len();
     let needs_grey = |m: &tobj::Model| m.mesh.material_id.is_none() && !m.mesh.indices.is_empty();
     if models.iter().any(needs_grey) {
-        let grey = BsdfDescription::Lambert { reflectance: Rgb::grey(UNKNOWN_GREY).into() };
+        let grey = LambertDescription { reflectance: Rgb::grey(UNKNOWN_GREY).into() };
         scene.materials.push(Material::new("(none)", grey));
         scene.places.push(Place::file(path));
     }

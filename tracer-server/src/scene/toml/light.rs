@@ -7,7 +7,8 @@ use glam::{DMat3, DVec3};
 use serde::Deserialize;
 
 use super::material::Color;
-use crate::scene::description::{Glow, LightDescription};
+use crate::scene::description::check::Fault;
+use crate::scene::description::{LightDescription, LightKind};
 use crate::scene::reading::image::read_sky;
 use crate::scene::reading::shape::Rotation;
 
@@ -81,42 +82,43 @@ struct EnvironmentEntry {
 
 impl LightEntry {
     /// The light, or the field that is amiss. Reads the image that it names, relative to `folder`.
-    pub(crate) fn light(&self, folder: &Path) -> Result<LightDescription, (&'static str, String)> {
-        let glow = match (self.point, self.spot, self.directional, &self.environment) {
+    pub(crate) fn light(&self, folder: &Path) -> Result<LightDescription, Fault> {
+        let kind = match (self.point, self.spot, self.directional, &self.environment) {
             (Some(point), None, None, None) => {
-                Glow::Point { position: point.position, intensity: point.intensity.into() }
+                LightKind::Point { position: point.position, intensity: point.intensity.into() }
             }
-            (None, Some(spot), None, None) => Glow::Spot {
+            (None, Some(spot), None, None) => LightKind::Spot {
                 position: spot.position,
                 direction: spot.target - spot.position,
                 intensity: spot.intensity.into(),
                 cutoff: spot.cutoff,
                 beam: spot.beam.unwrap_or(0.75 * spot.cutoff),
             },
-            (None, None, Some(sun), None) => {
-                Glow::Directional { direction: sun.direction, irradiance: sun.irradiance.into() }
-            }
-            (None, None, None, Some(environment)) => environment.glow(folder)?,
+            (None, None, Some(sun), None) => LightKind::Directional {
+                direction: sun.direction,
+                irradiance: sun.irradiance.into(),
+            },
+            (None, None, None, Some(environment)) => environment.kind(folder)?,
             _ => {
                 let message = "give exactly one of point, spot, directional or environment";
-                return Err(("name", message.to_owned()));
+                return Err(Fault::new("name", message));
             }
         };
-        Ok(LightDescription { name: self.name.clone(), glow })
+        Ok(LightDescription { name: self.name.clone(), kind })
     }
 }
 
 impl EnvironmentEntry {
-    fn glow(&self, folder: &Path) -> Result<Glow, (&'static str, String)> {
+    fn kind(&self, folder: &Path) -> Result<LightKind, Fault> {
         let image = self.image.as_ref().map(|name| read_sky(&folder.join(name))).transpose();
         let mut rotation = DMat3::IDENTITY;
         for turn in &self.rotate {
             rotation =
-                turn.matrix().map_err(|message| ("environment", message.to_owned()))? * rotation;
+                turn.matrix().map_err(|message| Fault::new("environment", message))? * rotation;
         }
-        Ok(Glow::Environment {
+        Ok(LightKind::Environment {
             radiance: self.radiance.map_or(Rgb::WHITE, Rgb::from),
-            image: image.map_err(|message| ("environment", message))?,
+            image: image.map_err(|message| Fault::new("environment", message))?,
             rotation,
         })
     }

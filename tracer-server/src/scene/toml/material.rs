@@ -1,67 +1,82 @@
 //! `[[materials]]` of the project's own scene file.
 
-use common::Rgb;
-use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fmt;
 
-use crate::bsdf::Fresnel;
-use crate::scene::description::{BsdfDescription, Coding, ColorInput, NumberInput};
+use common::Rgb;
+use serde::de::{Error as _, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+use crate::bsdf::{BsdfDescription, ColorInput, Given, MODELS, ModelKind, Named, NumberInput};
+use crate::scene::description::Coding;
+use crate::scene::description::check::Fault;
 
 /// `[[materials]]`: how a surface scatters and emits.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub(crate) struct MaterialEntry {
     /// The name that shapes refer to.
     pub(crate) name: String,
-    /// `"lambert"`, `"mirror"`, `"dielectric"`, `"conductor"` or `"plastic"`.
-    model: Model,
-    /// Share of light reflected, in [0, 1]: a number or `[r, g, b]`; for `lambert` and `plastic`
-    /// (the base below the coat) also `{ texture = "file.png", factor = 1 }`. Needed by `lambert`,
-    /// `mirror` and `plastic`; a tint of what is reflected for `dielectric` and for a `conductor`
-    /// with `eta` and `k`, default 1.
-    reflectance: Option<ColorEntry>,
-    /// `dielectric` only: tint of what is refracted at each crossing, in [0, 1]; default 1.
-    transmittance: Option<Color>,
-    /// Index of refraction: for `dielectric`, needed, that behind the surface over that in front;
-    /// for `plastic` that of the coat, default 1.5; for `conductor` that of the metal, also
-    /// `[r, g, b]`.
-    eta: Option<Color>,
-    /// `conductor` only: extinction coefficient, a number or `[r, g, b]`.
-    k: Option<Color>,
-    /// `conductor` and `plastic`: what a facet reflects at normal incidence, in place of the
-    /// indices; more at other angles by Schlick's approximation.
-    specular: Option<Color>,
-    /// `dielectric`, `conductor` and `plastic`: alpha of GGX in [0, 1]; default 0, smooth. For the
-    /// first two also `{ texture = "file.png", factor = 1 }`.
-    roughness: Option<NumberEntry>,
-    /// `plastic` only: true when light that goes to and fro below the coat takes on the base's
-    /// colour each time; default false.
-    #[serde(default)]
-    nonlinear: bool,
+    /// The name of a scattering model: one of [`MODELS`].
+    model: String,
     /// False to make the back of an opaque material black; default true.
-    #[serde(default = "yes")]
     pub(crate) two_sided: bool,
     /// Radiance emitted from the front side, a number or `[r, g, b]`; default 0.
     pub(crate) emission: Option<Color>,
+    /// All other keys: what the model's [`ModelKind::parameters`] are.
+    parameters: BTreeMap<String, Parameter>,
 }
 
-fn yes() -> bool {
-    true
+impl<'de> Deserialize<'de> for MaterialEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(MaterialVisitor)
+    }
 }
 
-/// A scattering model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum Model {
-    /// Ideal diffuse reflection.
-    Lambert,
-    /// Ideal mirror.
-    Mirror,
-    /// A boundary between two transparent media.
-    Dielectric,
-    /// A metal.
-    Conductor,
-    /// Diffuse paint under a transparent coat.
-    Plastic,
+struct MaterialVisitor;
+
+impl<'de> Visitor<'de> for MaterialVisitor {
+    type Value = MaterialEntry;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a table with the name of a material, its model, and the model's parameters")
+    }
+
+    fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<MaterialEntry, M::Error> {
+        let (mut name, mut model) = (None, None);
+        let (mut two_sided, mut emission, mut parameters) = (true, None, BTreeMap::new());
+        while let Some(key) = map.next_key::<String>()? {
+            match key.as_str() {
+                "name" => name = Some(map.next_value()?),
+                "model" => model = Some(map.next_value()?),
+                "two_sided" => two_sided = map.next_value()?,
+                "emission" => emission = Some(map.next_value()?),
+                _ => {
+                    let value = map.next_value()?;
+                    parameters.insert(key, value);
+                }
+            }
+        }
+        let name = name.ok_or_else(|| M::Error::missing_field("name"))?;
+        let model = model.ok_or_else(|| M::Error::missing_field("model"))?;
+        Ok(MaterialEntry { name, model, two_sided, emission, parameters })
+    }
+}
+
+/// What may stand for a parameter of a model.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "a number, three numbers [r, g, b], true or false, or { texture = \"file\", factor = 1 }"
+)]
+enum Parameter {
+    /// On or off.
+    Flag(bool),
+    /// A number or a colour.
+    Color(Color),
+    /// A name.
+    Word(String),
+    /// From an image.
+    Texture(TextureEntry),
 }
 
 /// A grey value or a colour.
@@ -93,32 +108,6 @@ struct TextureEntry {
     factor: Option<Color>,
 }
 
-/// A colour, or a texture.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(
-    untagged,
-    expecting = "a number, three numbers [r, g, b], or { texture = \"file\", factor = 1 }"
-)]
-enum ColorEntry {
-    /// The same everywhere.
-    Constant(Color),
-    /// From an image.
-    Texture(TextureEntry),
-}
-
-/// A number, or a texture.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(untagged, expecting = "a number, or { texture = \"file\", factor = 1 }")]
-enum NumberEntry {
-    /// The same everywhere.
-    Constant(f64),
-    /// From an image.
-    Texture(TextureEntry),
-}
-
-/// The field that is amiss, and a message.
-pub(crate) type Fault = (&'static str, String);
-
 /// Reads a texture and gives its index.
 pub(crate) trait ReadTexture {
     /// Reads the image file of that name, relative to the scene file.
@@ -126,155 +115,143 @@ pub(crate) trait ReadTexture {
 }
 
 impl MaterialEntry {
-    /// The model with its parameters, or the field that is amiss.
-    pub(crate) fn bsdf(&self, textures: &mut impl ReadTexture) -> Result<BsdfDescription, Fault> {
-        self.refuse_strangers()?;
-        let tint = self.constant_reflectance();
-        match self.model {
-            Model::Lambert => Ok(BsdfDescription::Lambert { reflectance: self.base(textures)? }),
-            Model::Mirror => {
-                Ok(BsdfDescription::Mirror { reflectance: tint?.ok_or_else(reflectance_needed)? })
-            }
-            Model::Dielectric => {
-                let missing = || fault("eta", "the model `dielectric` needs it (glass is 1.5)");
-                let eta = self.index()?.ok_or_else(missing)?;
-                let reflectance = tint?.unwrap_or(Rgb::WHITE);
-                let transmittance = self.transmittance.map_or(Rgb::WHITE, Rgb::from);
-                Ok(match self.rough(textures)? {
-                    Some(roughness) => BsdfDescription::RoughDielectric {
-                        eta,
-                        reflectance,
-                        transmittance,
-                        roughness,
-                    },
-                    None => BsdfDescription::Dielectric { eta, reflectance, transmittance },
-                })
-            }
-            Model::Conductor => {
-                let fresnel = match (self.specular, self.eta, self.k) {
-                    (Some(specular), None, None) => Fresnel::Schlick(specular.into()),
-                    (None, Some(eta), Some(k)) => Fresnel::Conductor {
-                        eta: eta.into(),
-                        k: k.into(),
-                        tint: tint?.unwrap_or(Rgb::WHITE),
-                    },
-                    _ => {
-                        let message = "give either specular, or eta and k, for a conductor";
-                        return Err(fault("model", message));
-                    }
-                };
-                let roughness = self.rough(textures)?.unwrap_or(NumberInput::Constant(0.0));
-                Ok(BsdfDescription::Conductor { fresnel, roughness })
-            }
-            Model::Plastic => {
-                let fresnel = match (self.specular, self.index()?) {
-                    (Some(_), Some(_)) => {
-                        return Err(fault("specular", "give either specular or eta for a coat"));
-                    }
-                    (Some(specular), None) => Fresnel::Schlick(specular.into()),
-                    (None, eta) => {
-                        Fresnel::Dielectric { eta: eta.unwrap_or(1.5), tint: Rgb::WHITE }
-                    }
-                };
-                let roughness = match self.roughness {
-                    None => 0.0,
-                    Some(NumberEntry::Constant(roughness)) => roughness,
-                    Some(NumberEntry::Texture(_)) => {
-                        let message = "the roughness of a coat is a number, the same everywhere";
-                        return Err(fault("roughness", message));
-                    }
-                };
-                let (diffuse, nonlinear) = (self.base(textures)?, self.nonlinear);
-                Ok(BsdfDescription::Plastic { diffuse, fresnel, roughness, nonlinear })
-            }
-        }
+    /// The model with its parameters and what is not modelled of it, or the field that is amiss.
+    pub(crate) fn bsdf(
+        &self,
+        textures: &mut impl ReadTexture,
+    ) -> Result<(BsdfDescription, Vec<String>), Fault> {
+        let unknown = || {
+            let known: Vec<&str> = MODELS.iter().map(|kind| kind.name).collect();
+            let known = known.join(", ");
+            Fault::new("model", format!("there is no model `{}`; the models: {known}", self.model))
+        };
+        let kind = MODELS.iter().find(|kind| kind.name == self.model).ok_or_else(unknown)?;
+        self.refuse_strangers(kind)?;
+        let mut given = Entry { parameters: &self.parameters, textures, warnings: Vec::new() };
+        let read = BsdfDescription::read(&self.model, &mut given).ok_or_else(unknown)?;
+        Ok((read?, given.warnings))
     }
 
-    /// Fields that another model has.
-    fn refuse_strangers(&self) -> Result<(), Fault> {
-        use Model::{Conductor, Dielectric, Plastic};
-        let fields = [
-            ("transmittance", self.transmittance.is_some(), &[Dielectric][..]),
-            ("eta", self.eta.is_some(), &[Dielectric, Conductor, Plastic]),
-            ("k", self.k.is_some(), &[Conductor]),
-            ("specular", self.specular.is_some(), &[Conductor, Plastic]),
-            ("roughness", self.roughness.is_some(), &[Dielectric, Conductor, Plastic]),
-            ("nonlinear", self.nonlinear, &[Plastic]),
-        ];
-        for (field, given, models) in fields {
-            if given && !models.contains(&self.model) {
-                let names: Vec<String> =
-                    models.iter().map(|m| format!("`{m:?}`").to_lowercase()).collect();
-                let names = names.join(" or ");
-                return Err((
-                    field,
-                    format!("only the model {names} has it; remove it or change the model"),
-                ));
-            }
+    /// Keys that the model does not have.
+    fn refuse_strangers(&self, kind: &ModelKind) -> Result<(), Fault> {
+        let has = |kind: &ModelKind, key: &str| kind.parameters.iter().any(|p| p.name == key);
+        let Some(key) = self.parameters.keys().find(|key| !has(kind, key)) else { return Ok(()) };
+        let others = MODELS.iter().filter(|kind| has(kind, key));
+        let others: Vec<String> = others.map(|kind| format!("`{}`", kind.name)).collect();
+        if others.is_empty() {
+            let known: Vec<&str> = kind.parameters.iter().map(|p| p.name).collect();
+            let message = format!(
+                "unknown field `{key}`; a material has name, model, two_sided and emission, and \
+                 `{}` has {}",
+                kind.name,
+                known.join(", ")
+            );
+            return Err(Fault::new(key, message));
         }
-        Ok(())
-    }
-
-    fn constant_reflectance(&self) -> Result<Option<Rgb>, Fault> {
-        match &self.reflectance {
-            None => Ok(None),
-            Some(ColorEntry::Constant(color)) => Ok(Some((*color).into())),
-            Some(ColorEntry::Texture(_)) => {
-                Err(fault("reflectance", "only `lambert` and `plastic` read a texture here"))
-            }
-        }
-    }
-
-    fn base(&self, textures: &mut impl ReadTexture) -> Result<ColorInput, Fault> {
-        match self.reflectance.as_ref().ok_or_else(reflectance_needed)? {
-            ColorEntry::Constant(color) => Ok(Rgb::from(*color).into()),
-            ColorEntry::Texture(entry) => {
-                let texture = textures
-                    .read(&entry.texture, Coding::Srgb)
-                    .map_err(|message| ("reflectance", message))?;
-                Ok(ColorInput::Texture {
-                    texture,
-                    factor: entry.factor.map_or(Rgb::WHITE, Rgb::from),
-                })
-            }
-        }
-    }
-
-    /// The roughness, unless the surface is smooth.
-    fn rough(&self, textures: &mut impl ReadTexture) -> Result<Option<NumberInput>, Fault> {
-        match &self.roughness {
-            None => Ok(None),
-            Some(NumberEntry::Constant(roughness)) => Ok(Some((*roughness).into())),
-            Some(NumberEntry::Texture(entry)) => {
-                let texture = textures
-                    .read(&entry.texture, Coding::Linear)
-                    .map_err(|message| ("roughness", message))?;
-                let factor = match entry.factor {
-                    None => 1.0,
-                    Some(Color::Grey(factor)) => factor,
-                    Some(Color::Rgb(_)) => {
-                        return Err(fault("roughness", "its factor is one number"));
-                    }
-                };
-                Ok(Some(NumberInput::Texture { texture, factor }))
-            }
-        }
-    }
-
-    /// An index of refraction that is the same for all colours.
-    fn index(&self) -> Result<Option<f64>, Fault> {
-        match self.eta {
-            None => Ok(None),
-            Some(Color::Grey(eta)) => Ok(Some(eta)),
-            Some(Color::Rgb(_)) => Err(fault("eta", "it is one number, the same for all colours")),
-        }
+        let others = match others.as_slice() {
+            [only] => format!("the model {only} has"),
+            several => format!("the models {} have", several.join(", ")),
+        };
+        let message = format!("only {others} it; remove it or change the model");
+        Err(Fault::new(key, message))
     }
 }
 
-fn fault(field: &'static str, message: &str) -> Fault {
-    (field, message.to_owned())
+/// The parameters of one material.
+struct Entry<'a, T> {
+    parameters: &'a BTreeMap<String, Parameter>,
+    textures: &'a mut T,
+    warnings: Vec<String>,
 }
 
-fn reflectance_needed() -> Fault {
-    fault("reflectance", "this model needs it: a number or [r, g, b] in [0, 1]")
+impl<T: ReadTexture> Entry<'_, T> {
+    fn texture(&mut self, name: &str, entry: &TextureEntry, coding: Coding) -> Result<u16, Fault> {
+        self.textures.read(&entry.texture, coding).map_err(|message| Fault::new(name, message))
+    }
+}
+
+impl<T: ReadTexture> Given for Entry<'_, T> {
+    type Error = Fault;
+
+    fn color(&mut self, name: &'static str) -> Result<Option<Rgb>, Fault> {
+        match self.parameters.get(name) {
+            None => Ok(None),
+            Some(Parameter::Color(color)) => Ok(Some((*color).into())),
+            Some(Parameter::Texture(_)) => {
+                Err(self.error(name, "it reads no texture here: give a number or [r, g, b]"))
+            }
+            Some(Parameter::Flag(_) | Parameter::Word(_)) => {
+                Err(self.error(name, "a number or [r, g, b] belongs here"))
+            }
+        }
+    }
+
+    fn color_input(&mut self, name: &'static str) -> Result<Option<ColorInput>, Fault> {
+        let Some(Parameter::Texture(entry)) = self.parameters.get(name) else {
+            return Ok(self.color(name)?.map(ColorInput::from));
+        };
+        let texture = self.texture(name, entry, Coding::Srgb)?;
+        let factor = entry.factor.map_or(Rgb::WHITE, Rgb::from);
+        Ok(Some(ColorInput::Texture { texture, factor }))
+    }
+
+    fn number(&mut self, name: &'static str) -> Result<Option<f64>, Fault> {
+        match self.parameters.get(name) {
+            None => Ok(None),
+            Some(Parameter::Color(Color::Grey(number))) => Ok(Some(*number)),
+            Some(Parameter::Color(Color::Rgb(_))) => {
+                Err(self.error(name, "it is one number, the same for all colours"))
+            }
+            Some(Parameter::Texture(_)) => {
+                Err(self.error(name, "it reads no texture here: give a number"))
+            }
+            Some(Parameter::Flag(_) | Parameter::Word(_)) => {
+                Err(self.error(name, "a number belongs here"))
+            }
+        }
+    }
+
+    fn number_input(&mut self, name: &'static str) -> Result<Option<NumberInput>, Fault> {
+        let Some(Parameter::Texture(entry)) = self.parameters.get(name) else {
+            return Ok(self.number(name)?.map(NumberInput::from));
+        };
+        let texture = self.texture(name, entry, Coding::Linear)?;
+        let factor = match entry.factor {
+            None => 1.0,
+            Some(Color::Grey(factor)) => factor,
+            Some(Color::Rgb(_)) => return Err(self.error(name, "its factor is one number")),
+        };
+        Ok(Some(NumberInput::Texture { texture, factor }))
+    }
+
+    fn number_or_name(&mut self, name: &'static str) -> Result<Option<Named>, Fault> {
+        if let Some(Parameter::Word(word)) = self.parameters.get(name) {
+            return Ok(Some(Named::Name(word.clone())));
+        }
+        Ok(self.number(name)?.map(Named::Number))
+    }
+
+    fn word(&mut self, name: &'static str) -> Result<Option<String>, Fault> {
+        match self.parameters.get(name) {
+            None => Ok(None),
+            Some(Parameter::Word(word)) => Ok(Some(word.clone())),
+            Some(_) => Err(self.error(name, "a word in quotes belongs here")),
+        }
+    }
+
+    fn flag(&mut self, name: &'static str) -> Result<bool, Fault> {
+        match self.parameters.get(name) {
+            None => Ok(false),
+            Some(Parameter::Flag(flag)) => Ok(*flag),
+            Some(_) => Err(self.error(name, "true or false belongs here")),
+        }
+    }
+
+    fn error(&self, name: &'static str, message: &str) -> Fault {
+        Fault::new(name, message)
+    }
+
+    fn warn(&mut self, message: &str) {
+        self.warnings.push(message.to_owned());
+    }
 }

@@ -15,7 +15,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::obj;
-use crate::scene::description::check::Part;
+use crate::scene::description::check::{Fault, Part};
 use crate::scene::description::{Coding, Material, Mesh, SceneDescription, Sphere, ThinLens};
 use crate::scene::reading::diagnostic::{LoadError, Place};
 use crate::scene::reading::image::read_texture;
@@ -208,9 +208,11 @@ impl Read {
             let message = format!("material `{name}` was defined before, at {before}; rename one");
             return Err(self.error(&place, "name", message));
         }
-        let bsdf = material.bsdf(self).map_err(|(field, message)| {
-            self.error(&place, field, format!("material `{name}`, {field}: {message}"))
+        let (bsdf, warnings) = material.bsdf(self).map_err(|Fault { field, message }| {
+            self.error(&place, &field, format!("material `{name}`, {field}: {message}"))
         })?;
+        let told = warnings.into_iter().map(|w| format!("material `{name}`: {w}"));
+        self.warnings.extend(told.map(|message| place.clone().warning(message)));
         self.description.materials.push(Material {
             two_sided: material.two_sided,
             emission: material.emission.map_or(Rgb::BLACK, Rgb::from),
@@ -283,11 +285,11 @@ impl Read {
     ) -> Result<Vec<(String, Vec<u16>, Surface)>, LoadError> {
         let folder = self.origins.whole.file.parent().unwrap_or_else(|| Path::new(""));
         let path = folder.join(name);
-        let scene = obj::read(&path).map_err(|error| match error {
-            LoadError::Unreadable { .. } => {
-                self.error(place, "obj", format!("mesh `{}`, obj: {error}", mesh.name))
+        let scene = obj::read(&path).map_err(|error| {
+            if !matches!(error, LoadError::Unreadable { .. }) {
+                return error;
             }
-            other => other,
+            self.error(place, "obj", format!("mesh `{}`, obj: {error}", mesh.name))
         })?;
         let offset = self.description.materials.len();
         let place_of_obj = self.origins.field(place, "obj");
@@ -325,9 +327,9 @@ impl Read {
     fn light(&mut self, text: &str, entry: &Spanned<LightEntry>) -> Result<(), LoadError> {
         let place = self.place(text, entry);
         let folder = self.origins.whole.file.parent().unwrap_or_else(|| Path::new(""));
-        let light = entry.get_ref().light(folder).map_err(|(field, message)| {
+        let light = entry.get_ref().light(folder).map_err(|Fault { field, message }| {
             let message = format!("light `{}`: {message}", entry.get_ref().name);
-            self.error(&place, field, message)
+            self.error(&place, &field, message)
         })?;
         self.description.lights.push(light);
         self.origins.lights.push(place);

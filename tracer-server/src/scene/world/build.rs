@@ -7,7 +7,6 @@ use glam::DVec3;
 use thiserror::Error;
 
 use super::accel::{Accel, Anchor};
-use super::appearance::surface;
 use super::corners::Corners;
 use super::emitter::Emitters;
 use super::lamp::{Bounds, Cone, Lamp};
@@ -15,7 +14,7 @@ use super::paint::Map;
 use super::sky::Sky;
 use super::surface::{Ball, NO_PRIMITIVE, Triangle};
 use super::{NO_EMITTER, Primitive, Scene, SceneFeatures, SurfaceMaterial};
-use crate::scene::description::{Glow, MAX_EDGES, SceneDescription, digest};
+use crate::scene::description::{LightKind, MAX_EDGES, SceneDescription, digest};
 
 /// Why a description makes no scene.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -78,7 +77,7 @@ impl Scene {
         }
         let emits =
             |material: u16| !description.materials[usize::from(material)].emission.is_black();
-        let shines = description.lights.iter().any(|light| !light.glow.is_dark());
+        let shines = description.lights.iter().any(|light| !light.kind.is_dark());
         if !shines && !materials.iter().any(|&m| emits(m)) {
             return Err(SceneError::NoLight);
         }
@@ -103,11 +102,10 @@ impl Scene {
         let surfaces: Vec<SurfaceMaterial> = description
             .materials
             .iter()
-            .map(|m| surface(description, m, 1.0 / radiance_scale))
+            .map(|m| SurfaceMaterial::new(description, m, 1.0 / radiance_scale))
             .collect();
         let used = used_surfaces(&materials, &surfaces);
-        let features =
-            SceneFeatures::of(&used, spheres, corners.has_normals(), (&emitters, &camera));
+        let features = SceneFeatures::of(&used, spheres, corners.has_normals(), &emitters, &camera);
         if !features.textures {
             corners.drop_texcoords();
         }
@@ -313,7 +311,7 @@ fn light_up(
     }
     let bounds = bounds(accel);
     let mut lamps: Vec<Lamp> =
-        description.lights.iter().map(|light| lamp(&light.glow, frame)).collect();
+        description.lights.iter().map(|light| lamp(&light.kind, frame)).collect();
     let of_surfaces: f64 =
         sources.iter().map(|&(_, radiance, area)| radiance.luminance() * area).sum();
     let power = of_surfaces + lamps.iter().map(|lamp| lamp.power(&bounds)).sum::<f64>();
@@ -340,13 +338,13 @@ fn bounds(accel: &Accel) -> Bounds {
 }
 
 /// A lamp in scene units. Intensity grows with the square of the unit of length.
-fn lamp(glow: &Glow, frame: SceneFrame) -> Lamp {
+fn lamp(kind: &LightKind, frame: SceneFrame) -> Lamp {
     let area = frame.scale * frame.scale;
-    match *glow {
-        Glow::Point { position, intensity } => {
+    match *kind {
+        LightKind::Point { position, intensity } => {
             Lamp::Point { position: frame.to_scene(position), intensity: intensity * area }
         }
-        Glow::Spot { position, direction, intensity, cutoff, beam } => Lamp::Spot {
+        LightKind::Spot { position, direction, intensity, cutoff, beam } => Lamp::Spot {
             position: frame.to_scene(position),
             intensity: intensity * area,
             cone: Cone {
@@ -355,10 +353,10 @@ fn lamp(glow: &Glow, frame: SceneFrame) -> Lamp {
                 cos_beam: beam.to_radians().cos(),
             },
         },
-        Glow::Directional { direction, irradiance } => {
+        LightKind::Directional { direction, irradiance } => {
             Lamp::Sun { direction: direction.normalize_or(DVec3::NEG_Y), irradiance }
         }
-        Glow::Environment { radiance, ref image, rotation } => Lamp::Sky(match image {
+        LightKind::Environment { radiance, ref image, rotation } => Lamp::Sky(match image {
             Some(image) => Sky::of_image(image.clone(), rotation, radiance),
             None => Sky::constant(radiance),
         }),

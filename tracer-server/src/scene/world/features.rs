@@ -38,14 +38,15 @@ impl SceneFeatures {
         used: &[&SurfaceMaterial],
         spheres: usize,
         shading_normals: bool,
-        (lights, camera): (&Emitters, &Camera),
+        lights: &Emitters,
+        camera: &Camera,
     ) -> Self {
         let environment = lights.sky().is_some();
         Self {
             specular: used.iter().any(|surface| surface.bsdf.has_dirac_lobe()),
             spheres: spheres > 0,
             shading_normals,
-            textures: used.iter().any(|surface| surface.paint.is_some()),
+            textures: used.iter().any(|surface| surface.textured.is_some()),
             one_sided: used.iter().any(|surface| surface.one_sided),
             environment,
             hittable: environment || !lights.list().is_empty(),

@@ -176,7 +176,7 @@ impl Lamp {
     pub(crate) fn invert(&self, normal: DVec3) -> Option<[f64; 2]> {
         match self {
             Self::Sky(sky) => Some(sky.invert(-normal)),
-            _ => None,
+            Self::Point { .. } | Self::Spot { .. } | Self::Sun { .. } => None,
         }
     }
 
@@ -248,7 +248,7 @@ impl Lamp {
                 hittable: false,
             }),
             Self::Sky(sky) => {
-                let (color, pdf) = sky.look(-direction);
+                let (color, pdf) = sky.evaluate(-direction);
                 (!color.is_black()).then_some(Emission {
                     color,
                     pdf,

@@ -1,7 +1,6 @@
 //! The world that is traced: a description brought to scene units, with its hierarchies and lights.
 
 mod accel;
-mod appearance;
 mod build;
 mod corners;
 mod emitter;
@@ -20,11 +19,12 @@ use std::f64::consts::{PI, TAU};
 use common::{Camera, FilterObject, Rgb, SceneFrame};
 use glam::{DVec2, DVec3};
 
-use crate::bsdf::{Bsdf, Local};
+use crate::bsdf::{Bsdf, BsdfDescription, Local};
+use crate::scene::description::{Material, SceneDescription};
 use accel::Accel;
 use corners::Corners;
 use emitter::Emitters;
-use paint::{Map, Paint};
+use paint::{Map, Painted};
 
 pub use accel::{Anchor, Hit};
 pub use build::SceneError;
@@ -73,12 +73,26 @@ struct SurfaceMaterial {
     name: String,
     /// Its model; with the mean of a texture.
     bsdf: Bsdf,
-    /// The textures it reads.
-    paint: Option<Paint>,
+    /// What it is built of anew at every point, where it reads textures.
+    textured: Option<BsdfDescription>,
     /// True when its back is black.
     one_sided: bool,
     /// Radiance in scene units.
     emission: Rgb,
+}
+
+impl SurfaceMaterial {
+    /// The material with emission in scene units.
+    fn new(scene: &SceneDescription, material: &Material, emission_factor: f64) -> Self {
+        let bsdf = material.bsdf.build(scene);
+        Self {
+            name: material.name.clone(),
+            bsdf,
+            textured: material.bsdf.is_textured().then_some(material.bsdf),
+            one_sided: !material.two_sided && !bsdf.is_transparent(),
+            emission: material.emission * emission_factor,
+        }
+    }
 }
 
 /// Texture coordinates on a sphere with poles at +y and -y: longitude from +x towards +z, and
@@ -166,13 +180,13 @@ impl Scene {
         let surface = &self.surfaces[usize::from(material)];
         let mut local = Local::flat(Cow::Borrowed(&surface.bsdf), at.normal);
         let triangle = self.accel.triangles().get(at.primitive as usize);
-        if let Some(paint) = &surface.paint {
+        if let Some(description) = &surface.textured {
             let uv = match triangle {
                 Some(triangle) => self.corners.texcoord(at.primitive, triangle, at.position),
                 None => Some(globe(at.normal)),
             };
             if let Some(uv) = uv {
-                let painted = paint.apply(&surface.bsdf, &self.maps, uv);
+                let painted = description.rebuild(&surface.bsdf, &Painted { maps: &self.maps, uv });
                 local = Local::flat(Cow::Owned(painted), at.normal);
             }
         }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use common::{Rgb, TexturePreview};
 use glam::DVec2;
 
-use crate::bsdf::{Bsdf, Ggx, deepened};
-use crate::scene::description::{Coding, ColorInput, NumberInput, Texture};
+use crate::bsdf::{ColorInput, Inputs, NumberInput};
+use crate::scene::description::{Coding, Texture};
 
 /// A texture with its codes decoded on the way.
 #[derive(Debug)]
@@ -77,31 +77,35 @@ fn neighbours(coordinate: f64, count: usize) -> (usize, usize, f64) {
     (first, (first + 1) % count, position - below)
 }
 
-/// Which textures a material reads.
+/// Inputs at a point of a surface.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Paint {
-    pub(super) color: Option<ColorInput>,
-    pub(super) roughness: Option<NumberInput>,
-    /// Index of a coat below which the colour grows deeper.
-    pub(super) coat: Option<f64>,
+pub(super) struct Painted<'a> {
+    /// The scene's textures.
+    pub(super) maps: &'a [Map],
+    /// The point's texture coordinates.
+    pub(super) uv: DVec2,
 }
 
-impl Paint {
-    /// The model at a point.
-    pub(super) fn apply(&self, bsdf: &Bsdf, maps: &[Map], uv: DVec2) -> Bsdf {
-        let map = |texture: u16| maps.get(usize::from(texture)).map(|map| map.at(uv));
-        let color = match self.color {
-            Some(ColorInput::Texture { texture, factor }) => map(texture).map(|c| c * factor),
-            _ => None,
-        };
-        let color = color.map(|color| self.coat.map_or(color, |eta| deepened(color, eta)));
-        let alpha = match self.roughness {
-            Some(NumberInput::Texture { texture, factor }) => {
-                map(texture).map(|c| c.luminance() * factor)
-            }
-            _ => None,
-        };
-        bsdf.painted(color, alpha.map(Ggx::new))
+impl Painted<'_> {
+    /// The colour of a texture; black where there is none.
+    fn texel(&self, texture: u16) -> Rgb {
+        self.maps.get(usize::from(texture)).map_or(Rgb::BLACK, |map| map.at(self.uv))
+    }
+}
+
+impl Inputs for Painted<'_> {
+    fn color(&self, input: ColorInput) -> Rgb {
+        match input {
+            ColorInput::Constant(color) => color,
+            ColorInput::Texture { texture, factor } => self.texel(texture) * factor,
+        }
+    }
+
+    fn number(&self, input: NumberInput) -> f64 {
+        match input {
+            NumberInput::Constant(number) => number,
+            NumberInput::Texture { texture, factor } => self.texel(texture).luminance() * factor,
+        }
     }
 }
 

@@ -7,7 +7,6 @@ use glam::DVec3;
 
 use super::surface::Ball;
 use super::{Scene, SurfaceMaterial};
-use crate::scene::description::ColorInput;
 
 /// A sphere is drawn with this many segments round its equator.
 const SEGMENTS: u32 = 48;
@@ -106,9 +105,7 @@ impl Scene {
     /// The picture that a surface's colour is read from; further ones than viewers take are left
     /// out, and their materials keep their mean colours.
     fn picture(&self, surface: &SurfaceMaterial, pictures: &mut Pictures) -> Option<u16> {
-        let Some(ColorInput::Texture { texture, factor }) = surface.paint?.color else {
-            return None;
-        };
+        let (texture, factor) = surface.textured?.color_texture()?;
         let map = self.maps.get(usize::from(texture))?;
         let known = pictures.read.iter().position(|read| *read == (texture, factor));
         let index = known.unwrap_or(pictures.read.len());
@@ -136,7 +133,8 @@ mod tests {
     use glam::Vec2;
 
     use super::*;
-    use crate::scene::description::{BsdfDescription, Coding, Texture};
+    use crate::bsdf::{BsdfDescription, ColorInput, LambertDescription};
+    use crate::scene::description::{Coding, Texture};
     use crate::scene::fixtures::diffuse_room;
 
     #[test]
@@ -145,8 +143,9 @@ mod tests {
         let without = fixture.build().preview_mesh();
         assert!(without.textures.is_empty() && without.texcoords.is_empty(), "nothing to paint");
         let factor = Rgb::new(1.0, 0.5, 1.0);
-        let painted =
-            BsdfDescription::Lambert { reflectance: ColorInput::Texture { texture: 0, factor } };
+        let painted = BsdfDescription::Lambert(LambertDescription {
+            reflectance: ColorInput::Texture { texture: 0, factor },
+        });
         fixture.description.textures.push(Texture {
             name: "checks".to_owned(),
             width: 2,

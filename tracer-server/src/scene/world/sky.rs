@@ -111,7 +111,7 @@ impl Distribution {
     }
 
     /// Radiance, and density per solid angle of drawing the direction.
-    fn look(&self, direction: DVec3) -> (Rgb, f64) {
+    fn evaluate(&self, direction: DVec3) -> (Rgb, f64) {
         let SkyImage { width, height, ref texels } = self.image;
         let (row, column) = self.texel(direction);
         let probability = |(from, to): (f64, f64)| to - from;
@@ -190,10 +190,10 @@ impl Sky {
 
     /// Radiance from where one looks in `direction`, and the density per solid angle with which
     /// [`Sky::sample`] draws it.
-    pub(crate) fn look(&self, direction: DVec3) -> (Rgb, f64) {
+    pub(crate) fn evaluate(&self, direction: DVec3) -> (Rgb, f64) {
         match &self.image {
             Some(image) => {
-                let (radiance, pdf) = image.look(self.to_image * direction);
+                let (radiance, pdf) = image.evaluate(self.to_image * direction);
                 (radiance * self.factor, pdf)
             }
             None => (self.factor, 1.0 / (4.0 * PI)),
@@ -229,7 +229,7 @@ mod tests {
             let again = sky.invert(direction);
             let off = (again[0] - u[0]).abs().max((again[1] - u[1]).abs());
             assert!(off < 1e-9, "{again:?} instead of {u:?}");
-            let (radiance, pdf) = sky.look(direction);
+            let (radiance, pdf) = sky.evaluate(direction);
             assert!(pdf > 0.0 && !radiance.is_black(), "a direction without light was drawn");
         }
     }
@@ -247,10 +247,10 @@ mod tests {
             let direction = sky.sample(rng.array());
             let (row, column) = image.texel(sky.to_image * direction);
             observed[row * 8 + column] += 1;
-            let (radiance, pdf) = sky.look(direction);
+            let (radiance, pdf) = sky.evaluate(direction);
             by_samples.push(radiance.luminance() / pdf);
             let [u, v] = rng.array();
-            evenly.push(sky.look(uniform_sphere(u, v)).1 * 4.0 * PI);
+            evenly.push(sky.evaluate(uniform_sphere(u, v)).1 * 4.0 * PI);
         }
         for row in 0..4 {
             for column in 0..8 {
@@ -262,7 +262,7 @@ mod tests {
                     latitude.cos(),
                     -latitude.sin() * turn.cos(),
                 );
-                let (_, pdf) = image.look(inside);
+                let (_, pdf) = image.evaluate(inside);
                 expected[row * 8 + column] = pdf * band(row, 4) / 8.0 * N as f64;
             }
         }
@@ -281,7 +281,7 @@ mod tests {
         texels[0] = [5.0; 3]; // top row, beginning at -z and turning to +x
         let image = SkyImage { width: 8, height: 4, texels };
         let sky = Sky::of_image(image, DMat3::IDENTITY, Rgb::WHITE);
-        let bright = |x, y, z| sky.look(DVec3::new(x, y, z).normalize()).0.g > 1.0;
+        let bright = |x, y, z| sky.evaluate(DVec3::new(x, y, z).normalize()).0.g > 1.0;
         assert!(bright(0.1, 1.0, -0.9), "between -z and +x, high up");
         assert!(!bright(-0.1, 1.0, -0.9) && !bright(0.1, 1.0, 0.9) && !bright(0.1, -1.0, -0.9));
     }

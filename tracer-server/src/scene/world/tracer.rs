@@ -17,6 +17,23 @@ pub struct RayCounts {
 }
 
 impl RayCounts {
+    /// What a worker has cast so far.
+    pub fn of(worker: &Tracer<'_>) -> Self {
+        Self { rays: worker.rays.get(), shadow_rays: worker.shadow_rays.get() }
+    }
+
+    /// What was cast since an earlier count.
+    #[must_use]
+    pub fn since(self, earlier: Self) -> Self {
+        Self { rays: self.rays - earlier.rays, shadow_rays: self.shadow_rays - earlier.shadow_rays }
+    }
+
+    /// Both together.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self { rays: self.rays + other.rays, shadow_rays: self.shadow_rays + other.shadow_rays }
+    }
+
     /// Adds what a worker has cast.
     pub fn add(&mut self, worker: &Tracer<'_>) {
         self.rays += worker.rays.get();

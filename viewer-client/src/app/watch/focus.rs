@@ -127,13 +127,15 @@ impl Names {
                 format!("failed    {}{at}; {range} + {eye}", self.reason(reason))
             }
             outcome => format!(
-                "{}  a {:.4} = min(1, {:.3e} / {:.3e} x {:.3} / {:.3}); {range}; film {:.4} {:.4}",
+                "{}  a {:.4} = min(1, {:.3e} / {:.3e} x {:.3} / {:.3} x {:.3e} / {:.3e}); {range}; film {:.4} {:.4}",
                 if outcome == FocusOutcome::Accepted { "accepted" } else { "rejected" },
                 step.acceptance,
                 f.backward,
                 f.forward,
                 f.mixture_current,
                 f.mixture_proposed,
+                f.target_proposed,
+                f.target_current,
                 step.film[0],
                 step.film[1]
             ),
@@ -162,6 +164,8 @@ impl Names {
             "backward": step.factors.backward,
             "mixture_current": step.factors.mixture_current,
             "mixture_proposed": step.factors.mixture_proposed,
+            "target_current": step.factors.target_current,
+            "target_proposed": step.factors.target_proposed,
             "length": step.length,
             "kept_light": step.kept_light,
             "kept_eye": step.kept_eye,

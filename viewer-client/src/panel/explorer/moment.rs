@@ -138,6 +138,7 @@ fn factors(ui: &mut Ui, moment: &Moment) {
     }
     let way = quotient(f.backward, f.forward);
     let mixture = quotient(f.mixture_current, f.mixture_proposed);
+    let target = quotient(f.target_proposed, f.target_current);
     let ratios = [
         (
             "Q back / forth",
@@ -145,7 +146,13 @@ fn factors(ui: &mut Ui, moment: &Moment) {
             "Q(x | y) over Q(y | x): above 1 where the way back is the easier one",
         ),
         ("Z(x) / Z(y)", mixture, "Weights of the strategies that can act on x, over those on y"),
-        ("r", way * mixture, "The product of both; a is the lesser of r and 1"),
+        (
+            "rho(y) / rho(x)",
+            target,
+            "How much more often y is visited than x for its light: what other samples find well is \
+             left to them",
+        ),
+        ("r", way * mixture * target, "The product of all three; a is the lesser of r and 1"),
     ];
     for (label, value, tip) in ratios {
         row(ui, label, tip, |ui| balance(ui, value));

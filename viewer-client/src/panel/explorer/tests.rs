@@ -100,13 +100,19 @@ fn a_failed_step_says_why() {
 #[test]
 fn an_acceptance_is_taken_apart() {
     let mut stage = driven();
-    let factors =
-        RatioFactors { forward: 4.0, backward: 1.0, mixture_current: 3.0, mixture_proposed: 2.0 };
-    let told = FocusStep { factors, acceptance: 0.375, ..step(1, FocusOutcome::Rejected, 4) };
+    let factors = RatioFactors {
+        forward: 4.0,
+        backward: 1.0,
+        mixture_current: 3.0,
+        mixture_proposed: 2.0,
+        target_current: 0.5,
+        target_proposed: 0.25,
+    };
+    let told = FocusStep { factors, acceptance: 0.1875, ..step(1, FocusOutcome::Rejected, 4) };
     stage.status.steering.focus.add_step(told);
     let mut harness = stage.harness();
     harness.run();
-    for text in ["a = 0.3750", "4.0000e0", "1.0000e0", "0.2500", "1.500", "0.3750"] {
+    for text in ["a = 0.1875", "4.0000e0", "1.0000e0", "0.2500", "1.500", "0.5000", "0.1875"] {
         assert!(shows(&harness, text), "`{text}` is missing");
     }
     click(&mut harness, "Inspect x");

@@ -4,12 +4,12 @@ use glam::DVec3;
 
 use super::material::check_emission;
 use super::{Fault, Part, Problem, check_point};
-use crate::scene::description::{Glow, SceneDescription};
+use crate::scene::description::{LightKind, SceneDescription};
 
 /// Checks all lights without a surface.
 pub(crate) fn check_lights(scene: &SceneDescription) -> Result<(), Problem> {
     let skies = scene.lights.iter().enumerate();
-    let mut skies = skies.filter(|(_, light)| matches!(light.glow, Glow::Environment { .. }));
+    let mut skies = skies.filter(|(_, light)| matches!(light.kind, LightKind::Environment { .. }));
     if let (Some(_), Some((index, _))) = (skies.next(), skies.next()) {
         let message = "the scene has an environment already; it can have one only";
         return Err(Problem::new(Part::Light(index), "environment", message));
@@ -20,35 +20,38 @@ pub(crate) fn check_lights(scene: &SceneDescription) -> Result<(), Problem> {
         return Err(Problem::new(Part::Scene, "lights", message));
     }
     for (index, light) in scene.lights.iter().enumerate() {
-        check_glow(&light.glow)
-            .map_err(|(field, message)| Problem::new(Part::Light(index), field, message))?;
+        check_kind(&light.kind).map_err(|fault| fault.of(Part::Light(index)))?;
     }
     Ok(())
 }
 
-fn check_glow(glow: &Glow) -> Result<(), Fault> {
+fn check_kind(kind: &LightKind) -> Result<(), Fault> {
     let heading = |direction: DVec3| {
         check_point(direction)?;
         let message = || "the direction has no length".to_owned();
         if direction.length_squared() > 0.0 { Ok(()) } else { Err(message()) }
     };
-    check_emission("", glow.color())?;
-    match glow {
-        Glow::Point { position, .. } => check_point(*position).map_err(|m| ("point", m)),
-        Glow::Spot { position, direction, cutoff, beam, .. } => {
-            check_point(*position).map_err(|m| ("spot", m))?;
-            heading(*direction).map_err(|m| ("spot", m))?;
+    check_emission("", kind.color())?;
+    match kind {
+        LightKind::Point { position, .. } => {
+            check_point(*position).map_err(|m| Fault::new("point", m))
+        }
+        LightKind::Spot { position, direction, cutoff, beam, .. } => {
+            check_point(*position).map_err(|m| Fault::new("spot", m))?;
+            heading(*direction).map_err(|m| Fault::new("spot", m))?;
             if !(*cutoff > 0.0 && *cutoff <= 180.0 && *beam >= 0.0 && beam <= cutoff) {
                 let message = format!(
                     "cutoff {cutoff} must lie above 0 and up to 180 degrees, beam {beam} between 0 \
                      and cutoff"
                 );
-                return Err(("spot", message));
+                return Err(Fault::new("spot", message));
             }
             Ok(())
         }
-        Glow::Directional { direction, .. } => heading(*direction).map_err(|m| ("directional", m)),
-        Glow::Environment { image, .. } => {
+        LightKind::Directional { direction, .. } => {
+            heading(*direction).map_err(|m| Fault::new("directional", m))
+        }
+        LightKind::Environment { image, .. } => {
             let sound = |texel: &[f32; 3]| texel.iter().all(|c| c.is_finite() && *c >= 0.0);
             let bad = image.as_ref().and_then(|i| i.texels.iter().position(|texel| !sound(texel)));
             match (image, bad) {
@@ -59,7 +62,7 @@ fn check_glow(glow: &Glow) -> Result<(), Fault> {
                          negative",
                         image.texels[at]
                     );
-                    Err(("environment", message))
+                    Err(Fault::new("environment", message))
                 }
                 _ => Ok(()),
             }

@@ -47,14 +47,14 @@ pub(crate) struct Problem {
     /// Where.
     pub(crate) part: Part,
     /// The field of that part, as the project's own scene files spell it; may be empty.
-    pub(crate) field: &'static str,
+    pub(crate) field: String,
     /// What, and what to do.
     pub(crate) message: String,
 }
 
 impl Problem {
-    pub(crate) fn new(part: Part, field: &'static str, message: impl Into<String>) -> Self {
-        Self { part, field, message: message.into() }
+    pub(crate) fn new(part: Part, field: &str, message: impl Into<String>) -> Self {
+        Self { part, field: field.to_owned(), message: message.into() }
     }
 }
 
@@ -72,19 +72,18 @@ pub(crate) fn validate(scene: &mut SceneDescription) -> Result<Vec<Dropped>, Pro
     check_film(scene)?;
     check_camera(scene)?;
     for texture in &scene.textures {
-        check_texture(texture).map_err(|(field, m)| Problem::new(Part::Scene, field, m))?;
+        check_texture(texture).map_err(|fault| fault.of(Part::Scene))?;
     }
     for (i, material) in scene.materials.iter().enumerate() {
         check_material(material, scene.textures.len())
-            .map_err(|(field, m)| Problem::new(Part::Material(i), field, m))?;
+            .map_err(|fault| fault.of(Part::Material(i)))?;
     }
     let materials = scene.materials.len();
     for (i, mesh) in scene.meshes.iter().enumerate() {
-        check_mesh(mesh, materials).map_err(|(field, m)| Problem::new(Part::Mesh(i), field, m))?;
+        check_mesh(mesh, materials).map_err(|fault| fault.of(Part::Mesh(i)))?;
     }
     for (i, sphere) in scene.spheres.iter().enumerate() {
-        check_sphere(sphere, materials)
-            .map_err(|(field, m)| Problem::new(Part::Sphere(i), field, m))?;
+        check_sphere(sphere, materials).map_err(|fault| fault.of(Part::Sphere(i)))?;
     }
     check_lights(scene)?;
     let count = scene.meshes.iter().map(|m| m.triangles.len()).sum::<usize>();
@@ -97,8 +96,25 @@ pub(crate) fn validate(scene: &mut SceneDescription) -> Result<Vec<Dropped>, Pro
     Ok(dropped)
 }
 
-/// The field that is at fault, and a message.
-pub(crate) type Fault = (&'static str, String);
+/// What is wrong with a part of a description.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Fault {
+    /// The field, as the project's own scene files spell it; may be empty.
+    pub(crate) field: String,
+    /// What, and what to do.
+    pub(crate) message: String,
+}
+
+impl Fault {
+    pub(crate) fn new(field: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { field: field.into(), message: message.into() }
+    }
+
+    /// With the part that has it.
+    fn of(self, part: Part) -> Problem {
+        Problem { part, field: self.field, message: self.message }
+    }
+}
 
 fn check_film(scene: &SceneDescription) -> Result<(), Problem> {
     let (width, height) = (scene.width, scene.height);
@@ -163,7 +179,7 @@ pub(crate) fn check_point(point: DVec3) -> Result<(), String> {
 
 fn check_mesh(mesh: &Mesh, materials: usize) -> Result<(), Fault> {
     for (i, &position) in mesh.positions.iter().enumerate() {
-        check_point(position).map_err(|m| ("positions", format!("position {i}: {m}")))?;
+        check_point(position).map_err(|m| Fault::new("positions", format!("position {i}: {m}")))?;
     }
     let vertices = mesh.positions.len();
     for (i, triangle) in mesh.triangles.iter().enumerate() {
@@ -172,7 +188,7 @@ fn check_mesh(mesh: &Mesh, materials: usize) -> Result<(), Fault> {
                 "triangle {i} refers to position {bad}, but there are only {vertices} (counted \
                  from 0)"
             );
-            return Err(("triangles", message));
+            return Err(Fault::new("triangles", message));
         }
     }
     if mesh.materials.len() != mesh.triangles.len() {
@@ -181,12 +197,13 @@ fn check_mesh(mesh: &Mesh, materials: usize) -> Result<(), Fault> {
             mesh.triangles.len(),
             mesh.materials.len()
         );
-        return Err(("material", message));
+        return Err(Fault::new("material", message));
     }
     check_corners(mesh)?;
     match mesh.materials.iter().find(|&&m| usize::from(m) >= materials) {
         Some(bad) => {
-            Err(("material", format!("material {bad} does not exist; there are {materials}")))
+            let message = format!("material {bad} does not exist; there are {materials}");
+            Err(Fault::new("material", message))
         }
         None => Ok(()),
     }
@@ -197,29 +214,29 @@ fn check_corners(mesh: &Mesh) -> Result<(), Fault> {
     let triangles = mesh.triangles.len();
     let listed = |field: &'static str, count: usize| {
         let message = || format!("{triangles} triangles, but {count} triples of {field}");
-        if count == 0 || count == triangles { Ok(()) } else { Err((field, message())) }
+        if count == 0 || count == triangles { Ok(()) } else { Err(Fault::new(field, message())) }
     };
     listed("normals", mesh.normals.len())?;
     listed("texcoords", mesh.texcoords.len())?;
     let not_finite = |i| format!("triangle {i} holds a number that is not finite");
     if let Some(i) = mesh.normals.iter().position(|t| !t.iter().all(|n| n.is_finite())) {
-        return Err(("normals", not_finite(i)));
+        return Err(Fault::new("normals", not_finite(i)));
     }
     match mesh.texcoords.iter().position(|t| !t.iter().all(|uv| uv.is_finite())) {
-        Some(i) => Err(("texcoords", not_finite(i))),
+        Some(i) => Err(Fault::new("texcoords", not_finite(i))),
         None => Ok(()),
     }
 }
 
 fn check_sphere(sphere: &Sphere, materials: usize) -> Result<(), Fault> {
-    check_point(sphere.centre).map_err(|m| ("centre", m))?;
+    check_point(sphere.centre).map_err(|m| Fault::new("centre", m))?;
     if !(sphere.radius > 0.0 && sphere.radius <= MAX_COORDINATE) {
         let message = format!("{} must be positive and at most {MAX_COORDINATE:e}", sphere.radius);
-        return Err(("radius", message));
+        return Err(Fault::new("radius", message));
     }
     if usize::from(sphere.material) >= materials {
         let message = format!("material {} does not exist", sphere.material);
-        return Err(("material", message));
+        return Err(Fault::new("material", message));
     }
     Ok(())
 }
@@ -272,7 +289,7 @@ fn check_whole(scene: &SceneDescription, triangles: usize) -> Result<(), Problem
     };
     let lit = scene.meshes.iter().any(|mesh| mesh.materials.iter().any(emits))
         || scene.spheres.iter().any(|sphere| emits(&sphere.material))
-        || scene.lights.iter().any(|light| !light.glow.is_dark());
+        || scene.lights.iter().any(|light| !light.kind.is_dark());
     if lit {
         return Ok(());
     }

@@ -1,11 +1,13 @@
 //! A rough boundary between two transparent media [Walter et al. 2007].
 
-use common::Event;
+use common::{Event, Rgb};
 use glam::DVec3;
 
-use super::conductor::facing;
-use super::dielectric::refract;
-use super::{Dielectric, Ggx, Scatter, Scattering, fresnel, reflect};
+use super::smooth::{Dielectric, refract};
+use crate::bsdf::conductor::facing;
+#[cfg(test)]
+use crate::bsdf::laws::Specimens;
+use crate::bsdf::{Ggx, Scatter, Scattering, fresnel, reflect};
 use crate::math::{Rng, below_one};
 
 /// Reflects and refracts by microfacets that are smooth boundaries, once: light that would meet a
@@ -82,6 +84,9 @@ impl RoughDielectric {
 }
 
 impl Scatter for RoughDielectric {
+    const NAME: &'static str = "rough dielectric";
+    const IS_TRANSPARENT: bool = true;
+
     fn sample(&self, n: DVec3, w: DVec3, [choice, u, v]: [f64; 3]) -> Option<(DVec3, Event)> {
         let frame = facing(n, w);
         let local = frame.to_local(w);
@@ -120,7 +125,7 @@ impl Scatter for RoughDielectric {
         lit.then_some(scattering)
     }
 
-    fn follow(&self, _: DVec3, _: DVec3, _: Event) -> Option<DVec3> {
+    fn specular_direction(&self, _: DVec3, _: DVec3, _: Event) -> Option<DVec3> {
         None
     }
 
@@ -130,5 +135,29 @@ impl Scatter for RoughDielectric {
 
     fn albedo(&self) -> f64 {
         self.facet.albedo()
+    }
+
+    fn preview_color(&self) -> Rgb {
+        self.facet.transmittance
+    }
+}
+
+#[cfg(test)]
+impl Specimens for RoughDielectric {
+    fn specimens() -> Vec<(&'static str, Self)> {
+        let glass = |eta, alpha| Self { facet: Dielectric::clear(eta), facets: Ggx::new(alpha) };
+        vec![
+            ("hazy glass", glass(1.5, 0.12)),
+            ("frosted glass", glass(1.5, 0.5)),
+            ("rough bubble", glass(1.0 / 1.33, 0.3)),
+        ]
+    }
+
+    fn samplers(_: Event) -> u32 {
+        1
+    }
+
+    fn index(&self) -> f64 {
+        self.facet.eta
     }
 }

@@ -1,5 +1,8 @@
 //! Rendering one image with any integrator, round by round, with a report at the end.
 
+pub mod auto;
+mod pace;
+
 use std::time::{Duration, Instant};
 
 use cpu_time::ProcessTime;
@@ -11,12 +14,18 @@ use crate::integrator::pssmlt::{PrimaryEnsemble, PrimarySettings, STEPS};
 use crate::integrator::{BidirectionalTracer, PathTracer};
 use crate::parallel::Stop;
 use crate::path::Failure;
+use crate::replicate::{Dial, Ledger, Outlook};
 use crate::scene::{RayCounts, Scene};
+use pace::Pace;
+
+pub use auto::Wish;
 
 /// How an image is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Integrator {
+    /// Base samples for what they find well, and Metropolis light transport for the rest.
+    Auto,
     /// Metropolis light transport.
     Mlt,
     /// Metropolis light transport in primary-sample space.
@@ -31,6 +40,7 @@ impl Integrator {
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Auto => "auto",
             Self::Mlt => "mlt",
             Self::Pssmlt => "pssmlt",
             Self::Bdpt => "bdpt",
@@ -44,7 +54,7 @@ impl Integrator {
 pub enum Budget {
     /// After this many mutations, or samples, for each pixel.
     PerPixel(u64),
-    /// After the first round that ends later than this.
+    /// When this much time has passed.
     Time(Duration),
 }
 
@@ -59,6 +69,8 @@ pub struct RenderSettings {
     pub ensemble: EnsembleSettings,
     /// What [`Integrator::Pssmlt`] needs besides.
     pub primary: PrimarySettings,
+    /// What [`Integrator::Auto`] is told of the division of the work.
+    pub dial: Dial,
 }
 
 /// An image with the story of how it was made.
@@ -68,6 +80,9 @@ pub struct Rendering {
     pub image: Film,
     /// The story.
     pub report: Report,
+    /// Sums over whole replicates, which tell the errors of the image; none for other integrators than
+    /// [`Integrator::Auto`], or of a single replicate.
+    pub errors: Option<Ledger>,
 }
 
 /// What a render took and what its chains did.
@@ -97,6 +112,20 @@ pub struct Report {
     pub chains: usize,
     /// Mutations, or samples, of all pixels together.
     pub mutations: u64,
+    /// Base samples among them.
+    pub base_samples: u64,
+    /// Whole replicates; zero for other integrators than `auto`, as all that is told of replicates.
+    pub replicates: u64,
+    /// Which replicates the image holds, as `--replicates` takes it: the same bits again.
+    pub selection: String,
+    /// How the work is divided between base samples and chains.
+    pub outlook: Option<Outlook>,
+    /// The noise: root of the relative mean squared error, as the spread of replicates tells.
+    pub noise: Option<f64>,
+    /// Standard error of the mean luminance of the image.
+    pub mean_error: Option<f64>,
+    /// Kurtosis of the replicates' mean luminances: where it is large, errors are not to be trusted.
+    pub mean_kurtosis: Option<f64>,
     /// True when it was stopped before its budget was spent.
     pub stopped: bool,
     /// Seconds of wall clock, seeding included.
@@ -174,7 +203,7 @@ pub enum Progress {
 pub fn render(
     scene: &Scene,
     settings: &RenderSettings,
-    on_progress: impl FnMut(Progress),
+    on_progress: impl FnMut(Progress) + Send,
 ) -> Rendering {
     render_until(&Stop::default(), scene, settings, on_progress)
 }
@@ -185,26 +214,21 @@ pub fn render_until(
     stop: &Stop,
     scene: &Scene,
     settings: &RenderSettings,
-    mut on_progress: impl FnMut(Progress),
+    mut on_progress: impl FnMut(Progress) + Send,
 ) -> Rendering {
+    if settings.integrator == Integrator::Auto {
+        return auto::plain(stop, scene, settings, &mut on_progress);
+    }
     let (wall, cpu) = (Instant::now(), ProcessTime::now());
     let mut work = Work::new(stop, scene, settings, |n| on_progress(Progress::Seeding(n)));
     let seeding_seconds = wall.elapsed().as_secs_f64();
-    let rounds = work.rounds(scene, settings.budget);
-    let mut done = 0;
+    let mut pace = Pace::new(&work, scene, settings.budget, wall);
     loop {
-        let spent = match settings.budget {
-            Budget::PerPixel(_) => done as f64 / rounds.count.max(1) as f64,
-            Budget::Time(limit) => wall.elapsed().as_secs_f64() / limit.as_secs_f64().max(1e-9),
-        };
-        on_progress(Progress::Rendering(spent.min(1.0)));
-        // Even when seeding has taken all the time, one round makes an image.
-        let timed_out = spent >= 1.0 && done > 0;
-        if timed_out || done == rounds.count || work.is_dark() || stop.is_set() {
-            break;
-        }
-        work.advance(scene, rounds.size(done), settings.ensemble.threads);
-        done += 1;
+        on_progress(Progress::Rendering(pace.spent()));
+        let amount = pace.next().filter(|_| !work.is_dark() && !stop.is_set());
+        let Some(amount) = amount else { break };
+        work.advance(scene, amount, settings.ensemble.threads);
+        pace.done(amount);
     }
     let image = work.image(scene);
     let wall_seconds = wall.elapsed().as_secs_f64();
@@ -229,26 +253,7 @@ pub fn render_until(
         mean: mean.into(),
         ..work.report(scene)
     };
-    Rendering { image, report }
-}
-
-/// A budget cut into rounds of equal steps for all chains.
-#[derive(Clone, Copy, Debug)]
-struct Rounds {
-    /// Number of rounds; as good as endless under a time limit.
-    count: u64,
-    /// Steps of a chain, or samples of a pixel, in all rounds together.
-    total: u64,
-}
-
-impl Rounds {
-    /// Steps of round number `round`: all rounds differ by at most one.
-    fn size(self, round: u64) -> u64 {
-        if self.count == u64::MAX {
-            return self.total;
-        }
-        self.total / self.count + u64::from(round < self.total % self.count)
-    }
+    Rendering { image, report, errors: None }
 }
 
 impl Work {
@@ -260,7 +265,8 @@ impl Work {
     ) -> Self {
         let seed = settings.ensemble.seed;
         match settings.integrator {
-            Integrator::Mlt => {
+            // Pictures of replicates are made elsewhere.
+            Integrator::Auto | Integrator::Mlt => {
                 Self::Mlt(Ensemble::until(stop, scene, &settings.ensemble, on_seeding))
             }
             Integrator::Pssmlt => {
@@ -272,29 +278,9 @@ impl Work {
         }
     }
 
-    fn rounds(&self, scene: &Scene, budget: Budget) -> Rounds {
-        const STEPS_UNDER_A_TIME_LIMIT: u64 = 512;
-        /// Samples of all pixels together between two looks at the clock, if a pixel's one is not more.
-        const SAMPLES_OF_A_ROUND: u64 = 1 << 17;
-        let pixels = scene.camera().pixel_count() as u64;
-        let Some(chains) = self.chain_count() else {
-            return match budget {
-                Budget::PerPixel(samples) => {
-                    let at_once = (SAMPLES_OF_A_ROUND / pixels.max(1)).max(1);
-                    let count = samples.div_ceil(at_once).max(samples.min(100));
-                    Rounds { count, total: samples }
-                }
-                Budget::Time(_) => Rounds { count: u64::MAX, total: 1 },
-            };
-        };
-        match budget {
-            Budget::PerPixel(mutations) => {
-                let all = mutations * pixels;
-                let total = all.div_ceil(chains.max(1) as u64);
-                Rounds { count: total.min(100), total }
-            }
-            Budget::Time(_) => Rounds { count: u64::MAX, total: STEPS_UNDER_A_TIME_LIMIT },
-        }
+    /// Work that cannot be done in parts: a step of every chain, or a sample.
+    fn unit(&self) -> u64 {
+        self.chain_count().map_or(1, |chains| chains.max(1) as u64)
     }
 
     /// True when no light reaches the film, so that there is nothing to do.
@@ -311,12 +297,23 @@ impl Work {
         }
     }
 
+    /// Does `amount` mutations or samples, of all pixels together: whole passes first, and what is left
+    /// of one through points anywhere on the film.
     fn advance(&mut self, scene: &Scene, amount: u64, threads: usize) {
+        let pixels = scene.camera().pixel_count() as u64;
+        let (passes, rest) = (amount / pixels, amount % pixels);
+        let steps = amount / self.unit();
         match self {
-            Self::Mlt(ensemble) => drop(ensemble.advance(scene, amount, None)),
-            Self::Pssmlt(ensemble) => ensemble.advance(scene, amount),
-            Self::Bdpt(tracer) => tracer.advance(scene, amount, threads),
-            Self::Path(tracer) => tracer.advance(scene, amount, threads),
+            Self::Mlt(ensemble) => drop(ensemble.advance(scene, steps, None)),
+            Self::Pssmlt(ensemble) => ensemble.advance(scene, steps),
+            Self::Bdpt(tracer) => {
+                tracer.advance(scene, passes, threads);
+                tracer.scatter(scene, rest);
+            }
+            Self::Path(tracer) => {
+                tracer.advance(scene, passes, threads);
+                tracer.scatter(scene, rest);
+            }
         }
     }
 
@@ -334,8 +331,8 @@ impl Work {
         match self {
             Self::Mlt(ensemble) => ensemble.steps(),
             Self::Pssmlt(ensemble) => ensemble.steps(),
-            Self::Bdpt(tracer) => tracer.samples() * pixels,
-            Self::Path(tracer) => tracer.samples() * pixels,
+            Self::Bdpt(tracer) => tracer.samples() * pixels + tracer.scattered(),
+            Self::Path(tracer) => tracer.samples() * pixels + tracer.scattered(),
         }
     }
 
@@ -343,7 +340,7 @@ impl Work {
     fn report(&self, scene: &Scene) -> Report {
         match self {
             Self::Mlt(ensemble) => {
-                let bootstrap_samples = ensemble.bootstrap().sample_count();
+                let bootstrap_samples = ensemble.pool().sample_count();
                 let names = ensemble.mixture().names();
                 let statistics = ensemble.statistics();
                 let normalization = ensemble.normalization(scene);
@@ -431,7 +428,8 @@ mod tests {
             ..EnsembleSettings::default()
         };
         let budget = Budget::PerPixel(per_pixel);
-        RenderSettings { integrator, budget, ensemble, primary: PrimarySettings::default() }
+        let (primary, dial) = (PrimarySettings::default(), Dial::default());
+        RenderSettings { integrator, budget, ensemble, primary, dial }
     }
 
     #[test]
@@ -443,7 +441,7 @@ mod tests {
                 Progress::Rendering(share) if share >= 0.2 => stop.set(),
                 Progress::Rendering(_) | Progress::Seeding(_) => {}
             };
-            let Rendering { image, report } =
+            let Rendering { image, report, .. } =
                 render_until(&stop, &scene, &settings(integrator, 50), stop_late);
             let name = integrator.name();
             assert!(report.stopped, "{name}");
@@ -464,7 +462,7 @@ mod tests {
             let stop = Stop::default();
             let told = stop.clone();
             let begun = std::sync::Barrier::new(2);
-            let Rendering { image, report } = std::thread::scope(|scope| {
+            let Rendering { image, report, .. } = std::thread::scope(|scope| {
                 scope.spawn(|| {
                     begun.wait();
                     std::thread::sleep(Duration::from_millis(5));
@@ -491,7 +489,7 @@ mod tests {
         for integrator in INTEGRATORS {
             let stop = Stop::default();
             stop.set();
-            let Rendering { image, report } =
+            let Rendering { image, report, .. } =
                 render_until(&stop, &scene, &settings(integrator, 4), |_| ());
             assert!(report.stopped && report.mutations == 0, "{report:?}");
             assert_eq!(image.mean(), common::Rgb::BLACK, "{}", integrator.name());

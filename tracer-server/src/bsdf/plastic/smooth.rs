@@ -5,8 +5,10 @@ use std::f64::consts::FRAC_1_PI;
 use common::{Event, Rgb};
 use glam::DVec3;
 
-use super::conductor::facing;
-use super::{Fresnel, Scatter, Scattering, reflect};
+use crate::bsdf::conductor::facing;
+#[cfg(test)]
+use crate::bsdf::laws::Specimens;
+use crate::bsdf::{Fresnel, Scatter, Scattering, reflect};
 use crate::math::{Rng, below_one, cosine_hemisphere, invert_cosine_hemisphere};
 
 /// A coat that mirrors by its Fresnel reflectance, and lets the rest pass to a diffuse base and
@@ -31,6 +33,11 @@ impl Plastic {
         Self { diffuse, fresnel, passed: 1.0 - untinted(fresnel).mean().max_channel() }
     }
 
+    /// The same coat over a base of another colour.
+    pub(super) fn painted(self, diffuse: Rgb) -> Self {
+        Self { diffuse, ..self }
+    }
+
     /// The share that passes the coat at an angle, the same for all colours so that none gains.
     #[inline]
     fn pass(&self, cosine: f64) -> f64 {
@@ -51,23 +58,14 @@ impl Plastic {
 pub(super) fn untinted(fresnel: Fresnel) -> Fresnel {
     match fresnel {
         Fresnel::Dielectric { eta, .. } => Fresnel::Dielectric { eta, tint: Rgb::WHITE },
-        other => other,
+        Fresnel::Constant(_) | Fresnel::Schlick(_) | Fresnel::Conductor { .. } => fresnel,
     }
 }
 
-/// The colour that a base of the given albedo shows through a dielectric coat.
-///
-/// Every reflection from below the coat tints the light once more: `color (1 - R) / (1 - color R)`
-/// with the diffuse reflectance `R` of the coat from below.
-pub fn deepened(color: Rgb, eta: f64) -> Rgb {
-    let outside = Fresnel::Dielectric { eta, tint: Rgb::WHITE }.mean().g;
-    // The same light passes a boundary both ways [Egan et al. 1973].
-    let inside = 1.0 - (1.0 - outside) / (eta * eta);
-    let deepen = |c: f64| c * (1.0 - inside) / (1.0 - c * inside);
-    Rgb::new(deepen(color.r), deepen(color.g), deepen(color.b))
-}
-
 impl Scatter for Plastic {
+    const NAME: &'static str = "plastic";
+    const HAS_DIRAC_LOBE: bool = true;
+
     fn sample(&self, n: DVec3, w: DVec3, [choice, u, v]: [f64; 3]) -> Option<(DVec3, Event)> {
         if choice < self.mirrored(n.dot(w).abs()) {
             return Some((reflect(n, w), Event::Reflect));
@@ -118,11 +116,11 @@ impl Scatter for Plastic {
                     eye_pdf: (1.0 - eye) * cos_l * FRAC_1_PI,
                 })
             }
-            _ => None,
+            Event::End | Event::Glossy | Event::Transmit => None,
         }
     }
 
-    fn follow(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
+    fn specular_direction(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
         let reflects = event == Event::Reflect && self.mirrored(n.dot(w).abs()) > 0.0;
         reflects.then(|| reflect(n, w))
     }
@@ -134,5 +132,32 @@ impl Scatter for Plastic {
     fn albedo(&self) -> f64 {
         let coat = self.fresnel.at(1.0);
         (coat + self.diffuse * self.pass(1.0)).max_channel()
+    }
+
+    fn preview_color(&self) -> Rgb {
+        self.diffuse
+    }
+}
+
+#[cfg(test)]
+impl Specimens for Plastic {
+    const MARGIN: f64 = 1e-3;
+
+    fn specimens() -> Vec<(&'static str, Self)> {
+        let tinted = Fresnel::Dielectric { eta: 1.3, tint: Rgb::new(0.5, 0.4, 0.9) };
+        vec![
+            ("plastic", Self::new(Rgb::new(0.8, 0.2, 0.05), Fresnel::COAT)),
+            ("white plastic", Self::new(Rgb::WHITE, Fresnel::COAT)),
+            ("tinted coat", Self::new(Rgb::new(0.8, 0.2, 0.05), tinted)),
+            ("black glass", Self::new(Rgb::BLACK, Fresnel::COAT)),
+        ]
+    }
+
+    fn samplers(event: Event) -> u32 {
+        u32::from(event == Event::Diffuse)
+    }
+
+    fn scatters(&self, _: f64) -> Option<Rgb> {
+        (self.diffuse == Rgb::WHITE).then_some(Rgb::WHITE)
     }
 }

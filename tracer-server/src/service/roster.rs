@@ -21,7 +21,7 @@ const RESUME_BYTES: usize = 32;
 
 /// Everyone who is there. Every change is announced.
 #[derive(Debug)]
-pub(super) struct Room {
+pub(super) struct Roster {
     hub: Hub,
     state: Mutex<State>,
 }
@@ -71,7 +71,7 @@ pub(super) struct Entry {
     pub(super) focus: bool,
 }
 
-impl Room {
+impl Roster {
     /// An empty one.
     pub(super) fn new(hub: Hub) -> Self {
         Self { hub, state: Mutex::default() }

@@ -22,26 +22,32 @@ const WINDOW: u64 = 20;
 const PAUSE: Duration = Duration::from_millis(100);
 /// Samples drawn at most for a precision that the driver asks for.
 const MOST_SAMPLES: u64 = 1 << 22;
+/// And at least.
+const LEAST_SAMPLES: u64 = 1 << 12;
+/// Relative standard error of `b` that is told of until somebody asks for another.
+const USUAL_PRECISION: f64 = 0.01;
 
-/// The chains of a scene.
-pub(super) struct Plant<'a> {
+/// Runs the chains of a scene round by round, and does in between what the driver asks for.
+pub(super) struct ChainRunner<'a> {
     scene: &'a Scene,
     settings: EnsembleSettings,
     hub: &'a Hub,
     archive: &'a Archive,
     ensemble: Ensemble,
+    /// Relative standard error of `b` that was asked for.
+    precision: f64,
     reporter: Reporter,
     epoch: u32,
     running: bool,
     /// What was changed last, and by whom.
     change: (String, Option<Author>),
     /// Viewers have not been told of a change yet.
-    untold: bool,
+    is_change_unsent: bool,
     /// A reply that found no room; no order is followed before it is given.
-    unsaid: Option<(u64, OrderReply)>,
+    unsent_reply: Option<(u64, OrderReply)>,
 }
 
-impl<'a> Plant<'a> {
+impl<'a> ChainRunner<'a> {
     /// Seeds the chains.
     pub(super) fn new(
         scene: &'a Scene,
@@ -60,11 +66,12 @@ impl<'a> Plant<'a> {
             hub,
             archive,
             ensemble,
+            precision: USUAL_PRECISION,
             epoch: 0,
             running: true,
             change: (String::new(), None),
-            untold: true,
-            unsaid: None,
+            is_change_unsent: true,
+            unsent_reply: None,
         }
     }
 
@@ -78,7 +85,7 @@ impl<'a> Plant<'a> {
             let works = self.running && self.ensemble.chain_count() > 0;
             // Chains that run look for orders between two rounds, and others wait for them.
             let wait = if works { Duration::ZERO } else { PAUSE };
-            let order = if self.unsaid.is_none() {
+            let order = if self.unsent_reply.is_none() {
                 orders.recv_timeout(wait)
             } else {
                 std::thread::sleep(wait);
@@ -86,7 +93,7 @@ impl<'a> Plant<'a> {
             };
             match order {
                 Ok(order) => {
-                    self.follow(order);
+                    self.answer(order);
                     continue;
                 }
                 Err(RecvTimeoutError::Timeout) => {}
@@ -108,8 +115,8 @@ impl<'a> Plant<'a> {
             // Kept before it is shown, so that whatever is picked can be found.
             let (normalization, _) = self.ensemble.normalization(self.scene);
             let checkpoints = self.ensemble.take_checkpoints();
-            let mixture = self.ensemble.shared_mixture();
-            self.archive.put(Round::new(mixture, normalization, WINDOW.min(steps), checkpoints));
+            let kernel = self.ensemble.shared_kernel();
+            self.archive.put(Round::new(kernel, normalization, WINDOW.min(steps), checkpoints));
         }
         for batch in batches {
             self.hub.publish_paths(batch);
@@ -121,24 +128,24 @@ impl<'a> Plant<'a> {
         self.reporter.report(self.scene, &self.ensemble, self.epoch, self.hub);
     }
 
-    fn follow(&mut self, order: Envelope<ChainCommand>) {
+    fn answer(&mut self, order: Envelope<ChainCommand>) {
         let Envelope { author, request, command } = order;
         let session = author.session;
-        let error = match self.obey(command, &author) {
+        let error = match self.carry_out(command, &author) {
             Ok(change) => {
                 info!(session, viewer = author.name, "{change}");
                 self.change = (change, Some(author));
-                self.untold = true;
+                self.is_change_unsent = true;
                 None
             }
             Err(error) => Some(error),
         };
-        self.unsaid = Some((session, OrderReply { request, error }));
+        self.unsent_reply = Some((session, OrderReply { request, error }));
         self.tell();
     }
 
     /// Does what is asked for, and says in a few words what that was.
-    fn obey(&mut self, command: ChainCommand, author: &Author) -> Result<String, String> {
+    fn carry_out(&mut self, command: ChainCommand, author: &Author) -> Result<String, String> {
         match command {
             ChainCommand::Pause => {
                 self.running = false;
@@ -150,11 +157,13 @@ impl<'a> Plant<'a> {
             }
             ChainCommand::SetWeight { strategy, weight } => self.set_weight(strategy, weight),
             ChainCommand::SetPrecision(precision) => {
-                let usual = EnsembleSettings::default();
-                let more = (usual.precision / precision).powi(2).max(1.0);
-                let samples = usual.bootstrap_samples as f64 * more;
-                self.settings.precision = precision;
-                self.settings.bootstrap_samples = (samples as u64).min(MOST_SAMPLES);
+                // The pool there is tells how large the next one must be, and is thrown away.
+                let (b, error) = self.ensemble.normalization(self.scene);
+                let more = (error / b / precision).powi(2);
+                let samples = self.settings.bootstrap_samples as f64 * more;
+                self.precision = precision;
+                self.settings.bootstrap_samples =
+                    (samples as u64).clamp(LEAST_SAMPLES, MOST_SAMPLES);
                 Ok(self.restart(format!("started anew, with b known to {precision}"), author))
             }
             ChainCommand::Restart { seed } => {
@@ -211,7 +220,7 @@ impl<'a> Plant<'a> {
             running: self.running,
             weights: self.ensemble.mixture().weights(),
             seed: self.settings.seed,
-            precision: self.settings.precision,
+            precision: self.precision,
             change,
             by,
         }
@@ -219,13 +228,13 @@ impl<'a> Plant<'a> {
 
     /// Answers the last order and tells everybody of the last change; where the way is full, later.
     fn tell(&mut self) {
-        if let Some((session, reply)) = &self.unsaid
+        if let Some((session, reply)) = &self.unsent_reply
             && self.hub.publish_reply(*session, reply.clone())
         {
-            self.unsaid = None;
+            self.unsent_reply = None;
         }
-        if self.untold {
-            self.untold = !self.hub.publish_chains(self.state());
+        if self.is_change_unsent {
+            self.is_change_unsent = !self.hub.publish_chains(self.state());
         }
     }
 }

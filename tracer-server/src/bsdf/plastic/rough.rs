@@ -5,9 +5,11 @@ use std::f64::consts::FRAC_1_PI;
 use common::{Event, Rgb};
 use glam::DVec3;
 
-use super::conductor::facing;
-use super::plastic::untinted;
-use super::{Fresnel, Ggx, Scatter, Scattering, reflect};
+use super::smooth::untinted;
+use crate::bsdf::conductor::facing;
+#[cfg(test)]
+use crate::bsdf::laws::Specimens;
+use crate::bsdf::{Fresnel, Ggx, Scatter, Scattering, reflect};
 use crate::math::{Rng, below_one, cosine_hemisphere, invert_cosine_hemisphere};
 
 /// A coat of microfacets over a diffuse base: the sum of a glossy and a diffuse lobe.
@@ -88,6 +90,11 @@ impl RoughPlastic {
         Self { diffuse, fresnel, facets, coat }
     }
 
+    /// The same coat over a base of another colour.
+    pub(super) fn painted(self, diffuse: Rgb) -> Self {
+        Self { diffuse, ..self }
+    }
+
     /// The probability that a walk that arrives at an angle samples the coat.
     #[inline]
     fn coated(&self, cosine: f64) -> f64 {
@@ -102,7 +109,7 @@ impl RoughPlastic {
     fn tint(&self) -> f64 {
         match self.fresnel {
             Fresnel::Dielectric { tint, .. } => tint.luminance(),
-            _ => 1.0,
+            Fresnel::Constant(_) | Fresnel::Schlick(_) | Fresnel::Conductor { .. } => 1.0,
         }
     }
 
@@ -116,6 +123,8 @@ impl RoughPlastic {
 }
 
 impl Scatter for RoughPlastic {
+    const NAME: &'static str = "rough plastic";
+
     fn sample(&self, n: DVec3, w: DVec3, [choice, u, v]: [f64; 3]) -> Option<(DVec3, Event)> {
         let frame = facing(n, w);
         let local = frame.to_local(w);
@@ -171,7 +180,7 @@ impl Scatter for RoughPlastic {
         })
     }
 
-    fn follow(&self, _: DVec3, _: DVec3, _: Event) -> Option<DVec3> {
+    fn specular_direction(&self, _: DVec3, _: DVec3, _: Event) -> Option<DVec3> {
         None
     }
 
@@ -183,6 +192,36 @@ impl Scatter for RoughPlastic {
         let coat = self.fresnel.at(1.0);
         let passed = 1.0 - self.coat.at(1.0);
         (coat + self.diffuse * passed).max_channel().min(1.0)
+    }
+
+    fn preview_color(&self) -> Rgb {
+        self.diffuse
+    }
+}
+
+#[cfg(test)]
+impl Specimens for RoughPlastic {
+    const MARGIN: f64 = 5e-3;
+
+    fn specimens() -> Vec<(&'static str, Self)> {
+        let red = Rgb::new(0.8, 0.2, 0.05);
+        let paint = |diffuse, fresnel, alpha| Self::new(diffuse, fresnel, Ggx::new(alpha));
+        let tinted = Fresnel::Dielectric { eta: 1.3, tint: Rgb::new(0.5, 0.4, 0.9) };
+        vec![
+            ("rough plastic", paint(red, Fresnel::COAT, 0.1)),
+            ("white rough plastic", paint(Rgb::WHITE, Fresnel::COAT, 0.4)),
+            ("phong", paint(red, Fresnel::Schlick(Rgb::new(0.5, 0.4, 0.3)), 0.2)),
+            ("rough tinted coat", paint(red, tinted, 0.6)),
+        ]
+    }
+
+    /// The coat and the base.
+    fn samplers(_: Event) -> u32 {
+        2
+    }
+
+    fn scatters(&self, _: f64) -> Option<Rgb> {
+        (self.diffuse == Rgb::WHITE).then_some(Rgb::WHITE)
     }
 }
 

@@ -3,7 +3,9 @@
 use common::{Event, Rgb};
 use glam::DVec3;
 
-use super::{Scatter, Scattering, fresnel, reflect};
+#[cfg(test)]
+use crate::bsdf::laws::Specimens;
+use crate::bsdf::{Scatter, Scattering, fresnel, reflect};
 use crate::math::{Rng, below_one};
 
 /// Reflects and refracts by Fresnel's equations; absorbs only through its tints.
@@ -41,19 +43,21 @@ pub(super) fn refract(facing: DVec3, w: DVec3, eta: f64) -> Option<DVec3> {
 }
 
 impl Scatter for Dielectric {
+    const NAME: &'static str = "dielectric";
+    const HAS_DIRAC_LOBE: bool = true;
+    const IS_TRANSPARENT: bool = true;
+
     fn sample(&self, n: DVec3, w: DVec3, [u, ..]: [f64; 3]) -> Option<(DVec3, Event)> {
         let reflected = fresnel::dielectric(n.dot(w).abs(), self.relative_eta(n, w));
         let event = if u < reflected { Event::Reflect } else { Event::Transmit };
-        self.follow(n, w, event).map(|direction| (direction, event))
+        self.specular_direction(n, w, event).map(|direction| (direction, event))
     }
 
     fn invert(&self, n: DVec3, w: DVec3, _: DVec3, event: Event, rng: &mut Rng) -> [f64; 3] {
         let reflected = fresnel::dielectric(n.dot(w).abs(), self.relative_eta(n, w));
         let [u, rest @ ..] = rng.array::<3>();
-        let choice = match event {
-            Event::Reflect => u * reflected,
-            _ => reflected + u * (1.0 - reflected),
-        };
+        let choice =
+            if event == Event::Reflect { u * reflected } else { reflected + u * (1.0 - reflected) };
         [below_one(choice), rest[0], rest[1]]
     }
 
@@ -68,7 +72,9 @@ impl Scatter for Dielectric {
                 let eta = self.relative_eta(n, w_l);
                 (self.transmittance, 1.0 - reflected, eta * eta)
             }
-            _ => return None,
+            Event::End | Event::Diffuse | Event::Glossy | Event::Reflect | Event::Transmit => {
+                return None;
+            }
         };
         (probability > 0.0 && !color.is_black()).then_some(Scattering {
             color,
@@ -80,11 +86,12 @@ impl Scatter for Dielectric {
         })
     }
 
-    fn follow(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
+    fn specular_direction(&self, n: DVec3, w: DVec3, event: Event) -> Option<DVec3> {
         match event {
-            Event::Reflect if !self.reflectance.is_black() => Some(reflect(n, w)),
-            Event::Transmit if !self.transmittance.is_black() => self.refract(n, w),
-            _ => None,
+            Event::Reflect => (!self.reflectance.is_black()).then(|| reflect(n, w)),
+            Event::Transmit if self.transmittance.is_black() => None,
+            Event::Transmit => self.refract(n, w),
+            Event::End | Event::Diffuse | Event::Glossy => None,
         }
     }
 
@@ -94,5 +101,41 @@ impl Scatter for Dielectric {
 
     fn albedo(&self) -> f64 {
         self.reflectance.max_channel().max(self.transmittance.max_channel())
+    }
+
+    fn preview_color(&self) -> Rgb {
+        self.transmittance
+    }
+}
+
+#[cfg(test)]
+impl Dielectric {
+    /// Without tints.
+    pub(in crate::bsdf) const fn clear(eta: f64) -> Self {
+        Self { eta, reflectance: Rgb::WHITE, transmittance: Rgb::WHITE }
+    }
+}
+
+#[cfg(test)]
+impl Specimens for Dielectric {
+    fn specimens() -> Vec<(&'static str, Self)> {
+        vec![
+            ("glass", Self::clear(1.5)),
+            ("bubble", Self::clear(1.0 / 1.33)),
+            ("nothing", Self::clear(1.0)),
+            ("nearly nothing", Self::clear(1.0 + 1e-7)),
+        ]
+    }
+
+    fn samplers(_: Event) -> u32 {
+        0
+    }
+
+    fn scatters(&self, _: f64) -> Option<Rgb> {
+        Some(Rgb::WHITE)
+    }
+
+    fn index(&self) -> f64 {
+        self.eta
     }
 }

@@ -1,6 +1,9 @@
 //! `tracer-server render`: one image, and the story of how it was made.
 
-use std::io::{self, Write};
+mod replicates;
+mod report;
+
+use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -8,23 +11,28 @@ use std::time::Duration;
 use anyhow::ensure;
 use clap::builder::RangedU64ValueParser;
 use clap::{Args, ValueEnum};
-use comfy_table::Table;
-use comfy_table::presets::UTF8_FULL_CONDENSED;
 use common::{mean_ratio, relative_mse};
 use host::Writer;
 use host::file::Place;
 
 use super::chains::ChainArgs;
 use super::input::{self, FilmSize};
+use super::integrator::IntegratorName;
 use super::meter::Meter;
 use super::stopper::Stopper;
 use crate::film::Film;
 use crate::image_file::{self, Destination};
 use crate::integrator::pssmlt::{PrimarySampler, PrimarySettings};
+use crate::parallel::Stop;
 use crate::render::{
-    Budget, Integrator, Progress, RenderSettings, Rendering, Report, render_until,
+    Budget, Integrator, Progress, RenderSettings, Rendering, Report, Wish, auto, render_until,
 };
+use crate::replicate::Part;
 use crate::scene::{MAX_EDGES, Scene};
+
+pub use replicates::{BaseName, DialArgs, ReplicateArgs};
+
+use report::{metadata, print, work};
 
 /// Mutations, or samples, for each pixel unless the user says otherwise.
 const DEFAULT_PER_PIXEL: u64 = 256;
@@ -40,6 +48,9 @@ const PATIENCE: Duration = Duration::from_secs(1);
 #[command(after_help = "\
 Examples:
   tracer-server render door -o door.png
+  tracer-server render door -o door.exr --until 1% --film-out door.lvf
+  tracer-server render door -o door.exr --time 60 --film-out door.lvf --resume
+  tracer-server render door -o a.exr --replicates 0..8 --film-out a.lvf
   tracer-server render cornell -o cornell.exr --integrator bdpt --mutations-per-pixel 64
   tracer-server render caustic -o caustic.exr --time 30 --reference reference.exr
   tracer-server render caustic -o plain.exr --without caustic,multi-chain --tune lens.radius=0.5..8
@@ -53,13 +64,13 @@ pub struct RenderArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// How to render.
-    #[arg(long, value_enum, default_value = "mlt")]
+    #[arg(long, value_enum, default_value = "auto")]
     pub integrator: IntegratorName,
     /// Mutations, or samples, for each pixel [default: 256].
     #[arg(long, value_name = "N", conflicts_with = "time")]
     #[arg(value_parser = RangedU64ValueParser::<u64>::new().range(1..=1 << 32))]
     pub mutations_per_pixel: Option<u64>,
-    /// Stop after the first round that ends later than this, seeding included.
+    /// Render for so many seconds, seeding included.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time: Option<Duration>,
     /// The chains.
@@ -68,6 +79,9 @@ pub struct RenderArgs {
     /// What `--integrator pssmlt` needs besides.
     #[command(flatten)]
     pub primary: PrimaryArgs,
+    /// Which replicates `--integrator auto` makes.
+    #[command(flatten)]
+    pub replicates: ReplicateArgs,
     /// The film.
     #[command(flatten)]
     pub film: FilmSize,
@@ -126,30 +140,6 @@ fn share(text: &str) -> Result<f64, String> {
     share.ok_or_else(|| "give a number from 0 to 1".to_owned())
 }
 
-/// The integrators by the names they have on the command line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum IntegratorName {
-    /// Metropolis light transport.
-    Mlt,
-    /// Metropolis light transport over the random numbers of a renderer.
-    Pssmlt,
-    /// Bidirectional path tracing.
-    Bdpt,
-    /// Path tracing with light sampling.
-    Path,
-}
-
-impl From<IntegratorName> for Integrator {
-    fn from(name: IntegratorName) -> Self {
-        match name {
-            IntegratorName::Mlt => Self::Mlt,
-            IntegratorName::Pssmlt => Self::Pssmlt,
-            IntegratorName::Bdpt => Self::Bdpt,
-            IntegratorName::Path => Self::Path,
-        }
-    }
-}
-
 /// A positive number of seconds.
 pub(super) fn seconds(text: &str) -> Result<Duration, String> {
     let time = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
@@ -172,12 +162,14 @@ struct Job {
     reference: Option<Film>,
     image: Destination,
     stats: Option<Place>,
+    replicates: ReplicateArgs,
 }
 
 impl Job {
     fn new(args: &RenderArgs) -> anyhow::Result<Self> {
         args.chains.check(args.integrator)?;
         let primary = args.primary.settings(args.integrator)?;
+        let dial = args.replicates.dial(args.integrator)?;
         let image = Destination::find(&args.output)?;
         let stats = args.stats_json.as_deref().map(Place::find).transpose()?;
         ensure!(
@@ -197,17 +189,18 @@ impl Job {
             },
             ensemble: args.chains.for_a_picture(&scene, &wishes)?,
             primary,
+            dial,
         };
-        Ok(Self { scene, settings, reference, image, stats })
+        let replicates = args.replicates.clone();
+        Ok(Self { scene, settings, reference, image, stats, replicates })
     }
 
     fn run(&self, stopper: &Stopper) -> anyhow::Result<ExitCode> {
         let Self { scene, settings, .. } = self;
+        let begun = self.replicates.begun()?;
         let what = format!("{}, {}", scene.name(), settings.integrator.name());
         let meter = Meter::new(what, "rendered");
-        let on_progress = |at| show(&meter, at);
-        let Rendering { image, mut report } =
-            render_until(stopper.stop(), scene, settings, on_progress);
+        let Rendering { image, mut report, errors } = self.make(begun, stopper.stop(), &meter)?;
         meter.finish();
         let stopped = if report.stopped { stopper.ending() } else { None };
         let code = stopped.map_or(ExitCode::SUCCESS, |ending| ending.exit_code().into());
@@ -221,7 +214,8 @@ impl Job {
             report.mean_ratio = Some(mean_ratio(image.pixels(), reference.pixels()));
             report.reference_missing = missing(reference);
         }
-        self.image.write(&image, &metadata(&report))?;
+        let planes = errors.map(|ledger| auto::planes(&ledger, scene.radiance_scale()));
+        self.image.write(&image, &planes.unwrap_or_default(), &metadata(&report))?;
         if let Some(stats) = &self.stats {
             stats.write_bytes(serde_json::to_string_pretty(&report)?.as_bytes())?;
         }
@@ -231,6 +225,26 @@ impl Job {
         }
         self.tell(&report)?;
         Ok(code)
+    }
+
+    /// Makes the picture, and keeps its replicates where that is wanted.
+    fn make(&self, begun: Option<Part>, stop: &Stop, meter: &Meter) -> anyhow::Result<Rendering> {
+        let Self { scene, settings, replicates, .. } = self;
+        if settings.integrator != Integrator::Auto {
+            return Ok(render_until(stop, scene, settings, |at| show(meter, at)));
+        }
+        let mut save = |part: &Part| match &replicates.film_out {
+            Some(file) => super::merge::write(file, part),
+            None => Ok(()),
+        };
+        let wish = Wish {
+            selection: replicates.replicates.clone(),
+            begun,
+            until: replicates.until,
+            stop: stop.clone(),
+            save: replicates.film_out.is_some().then_some(&mut save),
+        };
+        auto::render(scene, settings, wish, &mut |at| show(meter, at))
     }
 
     /// Prints the report, on standard error where the image itself went to standard output.
@@ -271,32 +285,6 @@ pub(super) fn missing(reference: &Film) -> usize {
     reference.pixels().iter().filter(|pixel| !pixel.is_finite()).count()
 }
 
-/// What an EXR file's header tells of the image.
-fn metadata(report: &Report) -> Vec<(String, String)> {
-    let entries: [(&str, &dyn std::fmt::Display); 12] = [
-        ("version", &env!("CARGO_PKG_VERSION")),
-        ("scene", &report.scene),
-        ("scene_hash", &report.scene_hash),
-        ("integrator", &report.integrator),
-        ("seed", &report.seed),
-        ("max_edges", &report.max_edges),
-        ("chains", &report.chains),
-        ("mutations", &report.mutations),
-        ("normalization", &report.normalization),
-        ("normalization_error", &report.normalization_error),
-        ("wall_seconds", &report.wall_seconds),
-        ("cpu_seconds", &report.cpu_seconds),
-    ];
-    let sampler = report.primary_sampler.map(|name| ("primary_sampler", name.to_owned()));
-    let large_step = report.large_step.map(|share| ("large_step", share.to_string()));
-    let entries = entries.into_iter().map(|(key, value)| (key, value.to_string()));
-    entries
-        .chain(sampler)
-        .chain(large_step)
-        .map(|(key, value)| (format!("lvis.{key}"), value))
-        .collect()
-}
-
 fn show(meter: &Meter, progress: Progress) {
     match progress {
         Progress::Seeding(samples) => meter.tell(format!("seeding: {samples} samples")),
@@ -304,114 +292,6 @@ fn show(meter: &Meter, progress: Progress) {
             tracing::debug!("{:.2} % rendered", 100.0 * share);
             meter.show(share, "");
         }
-    }
-}
-
-/// What the integrator counts.
-fn work(report: &Report) -> &'static str {
-    if report.chains > 0 { "mutations" } else { "samples" }
-}
-
-fn print(out: &mut impl Write, report: &Report, file: &Destination) -> io::Result<()> {
-    if !report.strategies.is_empty() {
-        writeln!(out, "Strategies; rates are shares of all tries, failures included")?;
-        writeln!(out, "{}", strategy_table(report).trim_fmt())?;
-    }
-    let work = work(report);
-    let per = |n: u64| n as f64 / report.mutations.max(1) as f64;
-    writeln!(
-        out,
-        "{:>12} {work}, {} a second on {} threads; {:.2} s of wall clock, {:.2} s of CPU",
-        report.mutations,
-        short(report.rate),
-        report.threads,
-        report.wall_seconds,
-        report.cpu_seconds,
-    )?;
-    writeln!(
-        out,
-        "{:>12} rays and {} shadow rays: {:.2} and {:.2} for each of the {work}",
-        report.rays,
-        report.shadow_rays,
-        per(report.rays),
-        per(report.shadow_rays),
-    )?;
-    if report.chains > 0 {
-        writeln!(
-            out,
-            "mean luminance b = {:.6} +- {:.6} ({:.2} %) from {} samples in {:.2} s; {} chains, \
-             longest stay at one path {} steps; {} proposals were no number",
-            report.normalization,
-            report.normalization_error,
-            100.0 * report.normalization_error / report.normalization.max(f64::MIN_POSITIVE),
-            report.bootstrap_samples,
-            report.seeding_seconds,
-            report.chains,
-            report.longest_dwell,
-            report.not_finite,
-        )?;
-    }
-    let [r, g, b] = report.mean;
-    writeln!(out, "mean of the image: {r:.6} {g:.6} {b:.6}")?;
-    if let (Some(error), Some(ratio)) = (report.relative_mse, report.mean_ratio) {
-        writeln!(
-            out,
-            "against the reference: relMSE {error:.3e}, relMSE x CPU seconds {:.3e}, mean ratio \
-             {ratio:.5}",
-            error * report.cpu_seconds,
-        )?;
-        if report.reference_missing > 0 {
-            let missing = report.reference_missing;
-            writeln!(out, "the reference has no value for {missing} pixels, which are left out")?;
-        }
-    }
-    writeln!(out, "written to {}", file.path().display())
-}
-
-/// What each strategy did. Every rate is a share of all tries of the strategy, failures included.
-fn strategy_table(report: &Report) -> Table {
-    let mut table = Table::new();
-    table.load_style(UTF8_FULL_CONDENSED).set_header([
-        "strategy",
-        "weight",
-        "tries",
-        "generated",
-        "of tries",
-        "accepted",
-        "of tries",
-        "mean a of tries",
-        "why tries failed, of tries",
-    ]);
-    let percent =
-        |part: u64, whole: u64| format!("{:.2} %", 100.0 * part as f64 / whole.max(1) as f64);
-    for (index, strategy) in report.strategies.iter().enumerate() {
-        let weight = report.prospects.get(index).map(|prospect| format!("{:.3}", prospect.weight));
-        let failures: Vec<String> = strategy
-            .failures
-            .iter()
-            .map(|(reason, count)| format!("{reason} {}", percent(*count, strategy.proposed)))
-            .collect();
-        table.add_row([
-            strategy.name.clone(),
-            weight.unwrap_or_default(),
-            strategy.proposed.to_string(),
-            strategy.generated.to_string(),
-            percent(strategy.generated, strategy.proposed),
-            strategy.accepted.to_string(),
-            percent(strategy.accepted, strategy.proposed),
-            format!("{:.4}", strategy.mean_acceptance),
-            failures.join(", "),
-        ]);
-    }
-    table
-}
-
-/// A rate with a unit prefix.
-fn short(rate: f64) -> String {
-    match rate {
-        r if r >= 1e6 => format!("{:.2} M", r / 1e6),
-        r if r >= 1e3 => format!("{:.1} k", r / 1e3),
-        r => format!("{r:.1}"),
     }
 }
 
