@@ -17,10 +17,8 @@ impl ControlQueue {
     #[must_use]
     pub(super) fn push(&mut self, event: TracerEvent, messages: usize, bytes: usize) -> bool {
         if let TracerEvent::Notice(notice) = &event {
-            self.waiting.retain(|old| match old {
-                TracerEvent::Notice(old) => !notice.makes_void(old),
-                _ => true,
-            });
+            let is_void = |old: &TracerEvent| matches!(old, TracerEvent::Notice(old) if notice.makes_void(old));
+            self.waiting.retain(|old| !is_void(old));
             self.bytes = self.waiting.iter().map(TracerEvent::byte_len).sum();
         }
         let size = event.byte_len();

@@ -266,7 +266,7 @@ impl Lane {
                 })))
             }
             Next::Later(wait) => Next::Later(wait.into_iter().chain(population.deadline()).min()),
-            next => next,
+            next @ (Next::Send(_) | Next::Film(_) | Next::ExplorerFilm(_)) => next,
         }
     }
 

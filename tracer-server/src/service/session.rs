@@ -334,10 +334,11 @@ impl Session {
         let Ok(room) = messages.reserve().await else {
             return Some(End::Left("it hung up".to_owned()));
         };
-        match self.subscription.next().await {
-            TracerEvent::Goodbye(reason) => return Some(End::Dismissed(reason)),
-            event => room.send(TracerMessage::from(&event)),
+        let event = self.subscription.next().await;
+        if let TracerEvent::Goodbye(reason) = event {
+            return Some(End::Dismissed(reason));
         }
+        room.send(TracerMessage::from(&event));
         None
     }
 }
