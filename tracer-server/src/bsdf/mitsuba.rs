@@ -69,6 +69,9 @@ pub(super) fn roughness<G: Given>(given: &mut G) -> Result<NumberInput, G::Error
     }
 }
 
+/// How far below zero a channel of a metal's indices may lie and be meant as none.
+const MOST_BELOW: f64 = 0.2;
+
 /// What a metal reflects: by its name, or by its index of refraction and extinction coefficient.
 pub(super) fn metal<G: Given>(given: &mut G) -> Result<Fresnel, G::Error> {
     let tint = given.color("specular_reflectance")?.unwrap_or(Rgb::WHITE);
@@ -78,7 +81,16 @@ pub(super) fn metal<G: Given>(given: &mut G) -> Result<Fresnel, G::Error> {
         return Ok(Fresnel::Constant(tint));
     }
     let (eta, k) = if let (Some(eta), Some(k)) = (given.color("eta")?, given.color("k")?) {
-        (eta, k)
+        // Spectra of metals leave the RGB space here and there, by a little.
+        let lowest = eta.r.min(eta.g).min(eta.b).min(k.r).min(k.g).min(k.b);
+        if (-MOST_BELOW..0.0).contains(&lowest) {
+            given.warn("a channel of eta or k is negative, as no metal has it; zero is used");
+        }
+        let mend = |color: Rgb| {
+            let channels = <[f64; 3]>::from(color);
+            Rgb::from(channels.map(|c| if (-MOST_BELOW..0.0).contains(&c) { 0.0 } else { c }))
+        };
+        (mend(eta), mend(k))
     } else {
         let name = name.unwrap_or_else(|| "Cu".to_owned());
         let metal = METALS.iter().find(|(known, _, _)| *known == name).ok_or_else(|| {

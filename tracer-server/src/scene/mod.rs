@@ -20,7 +20,7 @@ mod world;
 
 pub use description::{
     Coding, LightDescription, LightKind, MAX_EDGES, Material, Mesh, SceneDescription, SkyImage,
-    Sphere, Texture, ThinLens,
+    Sphere, Texels, Texture, ThinLens,
 };
 pub use reading::{StrategySetting, Wish};
 pub use world::{

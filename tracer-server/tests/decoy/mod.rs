@@ -11,7 +11,7 @@ use glam::{DVec3, Vec2, Vec3};
 use tracer_server::bsdf::{ColorInput, LambertDescription, MirrorDescription};
 use tracer_server::scene::load::load;
 use tracer_server::scene::{
-    Coding, Material, Mesh, Scene, SceneDescription, SceneFeatures, Sphere, Texture,
+    Coding, Material, Mesh, Scene, SceneDescription, SceneFeatures, Sphere, Texels, Texture,
 };
 
 /// A name, and whether a scene has it.
@@ -86,7 +86,6 @@ fn checks() -> Texture {
         name: "checks".to_owned(),
         width: 2,
         height: 1,
-        texels: Arc::new([[20; 3], [230; 3]]),
-        coding: Coding::Srgb,
+        texels: Texels::Codes(Arc::new([[20; 3], [230; 3]]), Coding::Srgb),
     }
 }

@@ -3,7 +3,7 @@
 use common::Rgb;
 use glam::DVec3;
 
-use super::{LightKind, SceneDescription};
+use super::{LightKind, SceneDescription, Texels};
 use crate::bsdf::{BsdfDescription, ColorInput, NumberInput, Value};
 
 /// Hex digest of everything that the picture depends on, names included.
@@ -32,8 +32,16 @@ pub(crate) fn digest(description: &SceneDescription) -> String {
     for texture in &description.textures {
         h.count(texture.width as usize);
         h.count(texture.height as usize);
-        h.count(texture.coding as usize);
-        h.0.update(texture.texels.as_flattened());
+        match &texture.texels {
+            Texels::Codes(codes, coding) => {
+                h.count(*coding as usize);
+                h.0.update(codes.as_flattened());
+            }
+            Texels::Numbers(numbers) => {
+                h.text("numbers");
+                h.0.update(bytemuck::cast_slice(numbers));
+            }
+        }
     }
     for sphere in &description.spheres {
         h.text(&sphere.name);

@@ -28,7 +28,7 @@ impl Material {
 }
 
 /// An image that is laid over surfaces and repeats.
-#[derive(Clone, PartialEq, Eq)]
+#[derive(Clone, PartialEq)]
 pub struct Texture {
     /// The file's name, for people.
     pub name: String,
@@ -36,10 +36,17 @@ pub struct Texture {
     pub width: u32,
     /// Height in texels.
     pub height: u32,
-    /// Codes of red, green and blue, row by row from the top.
-    pub texels: Arc<[[u8; 3]]>,
-    /// What the codes mean.
-    pub coding: Coding,
+    /// Red, green and blue, row by row from the top.
+    pub texels: Texels,
+}
+
+/// The values of a texture.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Texels {
+    /// Codes, and what they mean.
+    Codes(Arc<[[u8; 3]]>, Coding),
+    /// The numbers themselves, each in [0, 1].
+    Numbers(Arc<[[f32; 3]]>),
 }
 
 /// How the 8-bit codes of a texture stand for numbers in [0, 1].
@@ -81,26 +88,57 @@ impl Coding {
 impl Texture {
     /// The mean of all texels, decoded; black for a texture without any.
     pub fn mean(&self) -> Rgb {
-        // Counting codes first makes the sum exact and independent of the order of texels.
-        let mut counts = [[0_u64; 256]; 3];
-        for texel in self.texels.iter() {
-            for (channel, &code) in counts.iter_mut().zip(texel) {
-                channel[usize::from(code)] += 1;
+        match &self.texels {
+            Texels::Codes(codes, coding) => mean_of_codes(codes, *coding),
+            Texels::Numbers(numbers) => {
+                let colors = numbers.iter().map(|&[r, g, b]| Rgb::from([r, g, b]));
+                let sum = colors.fold(Rgb::BLACK, |sum, color| sum + color);
+                sum / numbers.len().max(1) as f64
             }
         }
-        let mean = |channel: &[u64; 256]| {
-            let decoded = (0_u8..=255).map(|code| self.coding.decode(code));
-            let sum: f64 = decoded.zip(channel).map(|(value, &n)| n as f64 * value).sum();
-            sum / self.texels.len().max(1) as f64
-        };
-        let [r, g, b] = &counts;
-        Rgb::new(mean(r), mean(g), mean(b))
     }
+}
+
+impl Texels {
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Codes(codes, _) => codes.len(),
+            Self::Numbers(numbers) => numbers.len(),
+        }
+    }
+
+    /// True where there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// The mean of all texels, decoded; black for none.
+fn mean_of_codes(texels: &[[u8; 3]], coding: Coding) -> Rgb {
+    // Counting codes first makes the sum exact and independent of the order of texels.
+    let mut counts = [[0_u64; 256]; 3];
+    for texel in texels {
+        for (channel, &code) in counts.iter_mut().zip(texel) {
+            channel[usize::from(code)] += 1;
+        }
+    }
+    let mean = |channel: &[u64; 256]| {
+        let decoded = (0_u8..=255).map(|code| coding.decode(code));
+        let sum: f64 = decoded.zip(channel).map(|(value, &n)| n as f64 * value).sum();
+        sum / texels.len().max(1) as f64
+    };
+    let [r, g, b] = &counts;
+    Rgb::new(mean(r), mean(g), mean(b))
 }
 
 impl std::fmt::Debug for Texture {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { name, width, height, coding, .. } = self;
-        write!(f, "Texture({name}, {width} x {height}, {coding:?})")
+        let Self { name, width, height, texels } = self;
+        let kind = match texels {
+            Texels::Codes(_, coding) => format!("{coding:?}"),
+            Texels::Numbers(_) => "numbers".to_owned(),
+        };
+        write!(f, "Texture({name}, {width} x {height}, {kind})")
     }
 }

@@ -13,7 +13,7 @@ use glam::{DVec3, Vec2, Vec3};
 use crate::bsdf::{ColorInput, Inputs, NumberInput};
 pub(crate) use hash::digest;
 pub use light::{LightDescription, LightKind, SkyImage};
-pub use material::{Coding, Material, Texture};
+pub use material::{Coding, Material, Texels, Texture};
 
 /// Longest path that any scene may ask for, in edges.
 pub const MAX_EDGES: usize = MAX_VERTICES - 1;

@@ -1,23 +1,23 @@
 //! The XML document: elements with their places, `$name` defaults, references, and a record of
-//! what was read, so that all the rest can be told. The only file that names roxmltree.
+//! what was read, so that all the rest can be told. The only file that names roxmltree, beside
+//! `include`.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use roxmltree::{Document, Node, NodeId, ParsingOptions};
+use roxmltree::{Document, Node, NodeId};
 
+use super::include::Text;
 use crate::scene::reading::diagnostic::{LoadError, Place, Warning};
 
-/// The most nodes of a document that are read.
-const MAX_NODES: u32 = 4_000_000;
 /// How many unread elements are told one by one.
 const MAX_TOLD: usize = 50;
 /// The most names that a message lists.
 const MAX_NAMES: usize = 30;
 
 /// Elements that bear on how long a picture takes or how its file looks, and on nothing else.
-const HARMLESS_TAGS: &[&str] = &["default", "alias", "sampler", "mode"];
+const HARMLESS_TAGS: &[&str] = &["default", "alias", "sampler", "mode", "path"];
 /// Parameters of that kind, in snake case.
 const HARMLESS_NAMES: &[&str] = &[
     "attach_log",
@@ -41,10 +41,8 @@ const HARMLESS_NAMES: &[&str] = &[
 /// A parsed scene file.
 #[derive(Debug)]
 pub(super) struct Source<'a> {
-    file: PathBuf,
+    text: &'a Text,
     document: Document<'a>,
-    /// Byte offsets at which the lines begin.
-    lines: Vec<usize>,
     defaults: BTreeMap<String, String>,
     /// Elements with an `id`, by node index.
     ids: BTreeMap<String, u32>,
@@ -60,22 +58,11 @@ pub(super) struct Element<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// Parses a document. Document types, and with them entities of its own, are refused.
-    pub(super) fn parse(text: &'a str, file: &Path) -> Result<Self, LoadError> {
-        let options = ParsingOptions { nodes_limit: MAX_NODES, ..ParsingOptions::default() };
-        let document = Document::parse_with_options(text, options).map_err(|error| {
-            let position = error.pos();
-            let place = Place {
-                column: Some(position.col as usize),
-                ..Place::line(file, position.row as usize)
-            };
-            place.error(format!("this is no well-formed XML: {error}"))
-        })?;
-        let newlines = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
+    /// Parses a document.
+    pub(super) fn parse(text: &'a Text) -> Result<Self, LoadError> {
         let source = Self {
-            file: file.to_path_buf(),
-            lines: std::iter::once(0).chain(newlines.map(|(at, _)| at + 1)).collect(),
-            document,
+            text,
+            document: text.document()?,
             defaults: BTreeMap::new(),
             ids: BTreeMap::new(),
             used: RefCell::default(),
@@ -94,12 +81,9 @@ impl<'a> Source<'a> {
                     let (Some(name), Some(value)) = (attribute("name"), attribute("value")) else {
                         return Err(place().error("`<default>` needs a name and a value"));
                     };
-                    defaults.entry(name.to_owned()).or_insert_with(|| value.to_owned());
-                }
-                "include" => {
-                    let message = "`<include>` is not supported: paste the content of that file \
-                                   in its place";
-                    return Err(place().error(message));
+                    // It may use those before it.
+                    let value = substitute(&defaults, value).map_err(|m| place().error(m))?;
+                    defaults.entry(name.to_owned()).or_insert(value);
                 }
                 "ref" => {}
                 _ => {
@@ -135,32 +119,7 @@ impl<'a> Source<'a> {
     }
 
     fn place(&self, node: &Node<'_, '_>) -> Place {
-        let start = node.range().start;
-        let line = self.lines.partition_point(|&begin| begin <= start);
-        let begin = self.lines.get(line.saturating_sub(1)).copied().unwrap_or(0);
-        let before = self.document.input_text().get(begin..start).unwrap_or_default();
-        Place { column: Some(before.chars().count() + 1), ..Place::line(&self.file, line) }
-    }
-
-    /// Puts the values of defaults in the place of `$name`.
-    fn substitute(&self, text: &str) -> Result<String, String> {
-        let mut out = String::new();
-        let mut pieces = text.split('$');
-        out.push_str(pieces.next().unwrap_or_default());
-        for piece in pieces {
-            let ends = |c: char| !(c.is_ascii_alphanumeric() || c == '_');
-            let (name, rest) = piece.split_at(piece.find(ends).unwrap_or(piece.len()));
-            let Some(value) = self.defaults.get(name) else {
-                let known = listed(self.defaults.keys());
-                return Err(format!(
-                    "`${name}` has no value: add `<default name=\"{name}\" value=\"...\"/>`; \
-                     those there are: {known}"
-                ));
-            };
-            out.push_str(value);
-            out.push_str(rest);
-        }
-        Ok(out)
+        self.text.place(node.range().start)
     }
 
     /// One warning for each element that nobody read though its parent was.
@@ -184,10 +143,31 @@ impl<'a> Source<'a> {
         }
         if more > 0 {
             let message = format!("{more} more elements are ignored");
-            warnings.push(Place::file(&self.file).warning(message));
+            warnings.push(self.text.place(0).warning(message));
         }
         warnings
     }
+}
+
+/// Puts the values of defaults in the place of `$name`.
+fn substitute(defaults: &BTreeMap<String, String>, text: &str) -> Result<String, String> {
+    let mut out = String::new();
+    let mut pieces = text.split('$');
+    out.push_str(pieces.next().unwrap_or_default());
+    for piece in pieces {
+        let ends = |c: char| !(c.is_ascii_alphanumeric() || c == '_');
+        let (name, rest) = piece.split_at(piece.find(ends).unwrap_or(piece.len()));
+        let Some(value) = defaults.get(name) else {
+            let known = listed(defaults.keys());
+            return Err(format!(
+                "`${name}` has no value: add `<default name=\"{name}\" value=\"...\"/>` before it; \
+                 those there are: {known}"
+            ));
+        };
+        out.push_str(value);
+        out.push_str(rest);
+    }
+    Ok(out)
 }
 
 /// True where not to model an element leaves the picture as it is.
@@ -264,10 +244,9 @@ impl<'a> Element<'a> {
         self.source.place(&self.node)
     }
 
-    /// A file that it names, relative to the scene file.
+    /// A file that it names, beside the scene file or where its `<path>`s lead.
     pub(super) fn file(&self, name: &str) -> PathBuf {
-        let folder = self.source.file.parent().unwrap_or_else(|| Path::new(""));
-        folder.join(name.replace('\\', "/"))
+        self.source.text.find(name)
     }
 
     /// An error at this element, which the message names.
@@ -288,7 +267,7 @@ impl<'a> Element<'a> {
 
     /// An attribute with its `$name`s replaced.
     pub(super) fn attribute(&self, name: &str) -> Result<Option<String>, LoadError> {
-        let value = self.node.attribute(name).map(|text| self.source.substitute(text));
+        let value = self.node.attribute(name).map(|text| substitute(&self.source.defaults, text));
         value.transpose().map_err(|message| self.error(message))
     }
 

@@ -1,9 +1,10 @@
 //! Emitters that belong to no shape.
 
 use common::Rgb;
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DMat4, DVec3};
 
 use super::document::Element;
+use super::transform::uniform_scale;
 use crate::scene::description::{LightDescription, LightKind};
 use crate::scene::reading::diagnostic::{LoadError, Warning};
 use crate::scene::reading::image::read_sky;
@@ -65,11 +66,11 @@ fn image(emitter: Element<'_>, rotation: DMat3) -> Result<LightKind, LoadError> 
     let name = emitter.string("filename")?.ok_or_else(|| {
         emitter.error("the parameter `filename` is missing: the file with the image")
     })?;
-    let rigid = (rotation.transpose() * rotation - DMat3::IDENTITY).to_cols_array();
-    if rigid.iter().any(|off| off.abs() > 1e-6) || rotation.determinant() < 0.0 {
-        let message = "its transform must be a rotation; remove scales and mirrors";
-        return Err(emitter.error(message));
-    }
+    // What is infinitely far away looks the same at any scale.
+    let scale = uniform_scale(&DMat4::from_mat3(rotation)).ok_or_else(|| {
+        emitter.error("its transform must keep all angles; remove scales that differ by axis")
+    })?;
+    let rotation = rotation * (1.0 / scale);
     let image = read_sky(&emitter.file(&name)).map_err(|message| emitter.error(message))?;
     let radiance = Rgb::grey(emitter.number("scale")?.unwrap_or(1.0));
     Ok(LightKind::Environment { radiance, image: Some(image), rotation })

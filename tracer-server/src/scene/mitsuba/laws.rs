@@ -331,7 +331,7 @@ fn every_mistake_is_located() {
         ("<rgb name=\"radiance\" value=\"1 2 3\"/>", "", "15:35", "`radiance` is missing"),
         ("value=\"1 2 3\"", "value=\"1 2 -3\"", "15:1", "not negative"),
         ("<emitter type=\"area\">", "<emitter type=\"point\">", "15:35", "belongs to a shape"),
-        ("</scene>", "<include filename=\"a.xml\"/></scene>", "16:1", "paste the content"),
+        ("</scene>", "<include filename=\"a.xml\"/></scene>", "16:1", "there is no file"),
         (
             "</scene>",
             "<shape type=\"cube\"><medium/></shape></scene>",
@@ -339,12 +339,6 @@ fn every_mistake_is_located() {
             "participating media",
         ),
         ("</scene>", "</scen>", "16:1", "no well-formed XML"),
-        (
-            "<?xml version=\"1.0\"?>",
-            "<!DOCTYPE a [<!ENTITY b \"c\">]>",
-            "1:1",
-            "no well-formed XML",
-        ),
     ];
     for (from, to, place, words) in cases {
         assert!(GOOD.contains(from), "the case replaces nothing: {from}");

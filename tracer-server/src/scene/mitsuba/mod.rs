@@ -5,6 +5,7 @@
 mod bsdf;
 mod document;
 mod emitter;
+mod include;
 #[cfg(test)]
 mod laws;
 mod mesh;
@@ -24,19 +25,16 @@ use glam::DVec3;
 use crate::scene::description::{MAX_EDGES, SceneDescription, Sphere};
 use crate::scene::reading::diagnostic::{LoadError, Warning};
 use crate::scene::reading::origin::Origins;
-use crate::scene::reading::text::read_utf8;
 use crate::scene::reading::{DEFAULT_MAX_EDGES, Read, viewpoint};
 use document::{Element, Source};
+use include::Text;
 use palette::Palette;
 use shape::{Geometry, Shape};
 
-/// The most bytes of a scene file that are read.
-const MAX_XML_BYTES: u64 = 64 << 20;
-
 /// Reads a scene file and the files that it names, relative to it.
 pub(super) fn read(path: &Path, name: &str) -> Result<Read, LoadError> {
-    let text = read_utf8(path, MAX_XML_BYTES)?;
-    let source = Source::parse(text.trim_start_matches('\u{feff}'), path)?;
+    let text = Text::read(path)?;
+    let source = Source::parse(&text)?;
     let root = source.root().read();
     if root.tag() != "scene" {
         return Err(root.error("no scene: the outermost element must be `<scene>`"));
@@ -89,7 +87,11 @@ impl Loader {
         let Some(integrator) = root.objects("integrator")?.first().copied() else { return Ok(()) };
         // An integrator may be wrapped in another one.
         let inner = integrator.objects("integrator")?.first().copied().unwrap_or(integrator);
-        let edges = inner.integer("max_depth")?.unwrap_or(-1);
+        // Direct light is a light, a surface and the camera.
+        let edges = match inner.plugin()?.as_str() {
+            "direct" => 2,
+            _ => inner.integer("max_depth")?.unwrap_or(-1),
+        };
         match usize::try_from(edges) {
             Ok(edges) if edges > MAX_EDGES => {
                 let message = format!("max_depth is {edges}; {MAX_EDGES} is used");

@@ -124,6 +124,10 @@ impl Element<'_> {
     /// What this element, itself a parameter, says of a colour: linear RGB.
     pub(super) fn as_color(&self) -> Result<Rgb, LoadError> {
         let spectral = "colours are computed in RGB; give `<rgb value=\"r, g, b\"/>` instead";
+        if self.tag() == "spectrum" && self.attribute("type")?.as_deref() == Some("d65") {
+            // The white of the colour space itself.
+            return Ok(Rgb::grey(self.number("scale")?.unwrap_or(1.0)));
+        }
         match self.tag() {
             "rgb" | "srgb" | "spectrum" | "float" | "integer" | "color" => {}
             "texture" => return Err(self.error("a texture cannot stand here; give a colour")),
@@ -134,7 +138,9 @@ impl Element<'_> {
             return Err(self.error(format!("a spectrum over wavelengths: {spectral}")));
         }
         if let Some(codes) = hex(&value) {
-            let [r, g, b] = codes.map(|code| Coding::Srgb.decode(code));
+            // `<rgb>` is linear however it is written.
+            let coding = if self.tag() == "rgb" { Coding::Linear } else { Coding::Srgb };
+            let [r, g, b] = codes.map(|code| coding.decode(code));
             return Ok(Rgb::new(r, g, b));
         }
         let DVec3 { x, y, z } = triple(&value).map_err(|message| self.error(message))?;

@@ -12,7 +12,7 @@ use common::Rgb;
 use glam::{DVec3, Vec2, Vec3};
 
 use crate::bsdf::LambertDescription;
-use crate::scene::description::{Coding, Material, Mesh, Texture};
+use crate::scene::description::{Coding, Material, Mesh, Texels, Texture};
 use crate::scene::reading::diagnostic::{LoadError, Place, Warning};
 use crate::scene::reading::image::read_texture;
 use crate::scene::reading::text::{read_lossy, without_comment};
@@ -198,9 +198,17 @@ impl Images {
     fn exponents(&mut self, value: &str, full: f64) -> Result<Mapped, String> {
         let file = self.file(value);
         let mut texture = read_texture(&file, Coding::Linear)?;
-        let rough =
-            |code: u8| (255.0 * phong_roughness(full * f64::from(code) / 255.0)).round() as u8;
-        texture.texels = texture.texels.iter().map(|texel| texel.map(rough)).collect();
+        let rough = |share: f64| phong_roughness(full * share);
+        texture.texels = match texture.texels {
+            Texels::Codes(codes, coding) => {
+                let code = |code: u8| (255.0 * rough(coding.decode(code))).round() as u8;
+                Texels::Codes(codes.iter().map(|texel| texel.map(code)).collect(), coding)
+            }
+            Texels::Numbers(numbers) => {
+                let number = |share: f32| rough(share.into()) as f32;
+                Texels::Numbers(numbers.iter().map(|texel| texel.map(number)).collect())
+            }
+        };
         let index = u16::try_from(self.textures.len())
             .map_err(|_error| "more than 65,536 textures".to_owned())?;
         let mean = texture.mean();

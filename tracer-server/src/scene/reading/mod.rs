@@ -2,8 +2,10 @@
 //! what a reader hands on.
 
 pub(crate) mod diagnostic;
+pub(crate) mod encoding;
 pub(crate) mod image;
 pub(crate) mod origin;
+mod pfm;
 pub(crate) mod shape;
 pub(crate) mod text;
 pub(crate) mod viewpoint;

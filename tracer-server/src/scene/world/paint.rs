@@ -6,27 +6,38 @@ use common::{Rgb, TexturePreview};
 use glam::DVec2;
 
 use crate::bsdf::{ColorInput, Inputs, NumberInput};
-use crate::scene::description::{Coding, Texture};
+use crate::scene::description::{Coding, Texels, Texture};
 
 /// A texture with its codes decoded on the way.
 #[derive(Debug)]
 pub(super) struct Map {
     width: usize,
     height: usize,
-    texels: Arc<[[u8; 3]]>,
-    /// The number that each code stands for.
-    decoded: Box<[f64; 256]>,
+    content: Content,
+}
+
+/// The values of a map.
+#[derive(Debug)]
+enum Content {
+    /// Codes, and the number that each stands for.
+    Codes(Arc<[[u8; 3]]>, Box<[f64; 256]>),
+    /// Numbers.
+    Numbers(Arc<[[f32; 3]]>),
 }
 
 impl Map {
     pub(super) fn new(texture: &Texture) -> Self {
-        let Texture { width, height, coding, .. } = *texture;
-        let mut decoded = Box::new([0.0; 256]);
-        for (code, value) in (0_u8..=255).zip(decoded.iter_mut()) {
-            *value = Coding::decode(coding, code);
-        }
-        let texels = Arc::clone(&texture.texels);
-        Self { width: width as usize, height: height as usize, texels, decoded }
+        let content = match &texture.texels {
+            Texels::Codes(codes, coding) => {
+                let mut decoded = Box::new([0.0; 256]);
+                for (code, value) in (0_u8..=255).zip(decoded.iter_mut()) {
+                    *value = coding.decode(code);
+                }
+                Content::Codes(Arc::clone(codes), decoded)
+            }
+            Texels::Numbers(numbers) => Content::Numbers(Arc::clone(numbers)),
+        };
+        Self { width: texture.width as usize, height: texture.height as usize, content }
     }
 
     /// The colour at a point by bilinear interpolation between the four texels around it; the image
@@ -63,8 +74,14 @@ impl Map {
     }
 
     fn texel(&self, x: usize, y: usize) -> Rgb {
-        let [r, g, b] = self.texels[y * self.width + x].map(|c| self.decoded[usize::from(c)]);
-        Rgb::new(r, g, b)
+        let index = y * self.width + x;
+        match &self.content {
+            Content::Codes(codes, decoded) => {
+                let [r, g, b] = codes[index].map(|code| decoded[usize::from(code)]);
+                Rgb::new(r, g, b)
+            }
+            Content::Numbers(numbers) => Rgb::from(numbers[index]),
+        }
     }
 }
 
@@ -118,8 +135,10 @@ mod tests {
             name: "checks".to_owned(),
             width: 2,
             height: 2,
-            texels: vec![[255, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 255]].into(),
-            coding: Coding::Linear,
+            texels: Texels::Codes(
+                vec![[255, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 255]].into(),
+                Coding::Linear,
+            ),
         })
     }
 
@@ -140,8 +159,7 @@ mod tests {
             name: "stripes".to_owned(),
             width: 1030,
             height: 3,
-            texels: texels.into(),
-            coding: Coding::Linear,
+            texels: Texels::Codes(texels.into(), Coding::Linear),
         });
         let preview = map.preview(Rgb::new(1.0, 0.5, 0.0));
         assert_eq!((preview.width, preview.height, preview.texels.len()), (344, 1, 344), "small");

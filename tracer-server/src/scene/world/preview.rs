@@ -134,7 +134,7 @@ mod tests {
 
     use super::*;
     use crate::bsdf::{BsdfDescription, ColorInput, LambertDescription};
-    use crate::scene::description::{Coding, Texture};
+    use crate::scene::description::{Coding, Texels, Texture};
     use crate::scene::fixtures::diffuse_room;
 
     #[test]
@@ -150,8 +150,7 @@ mod tests {
             name: "checks".to_owned(),
             width: 2,
             height: 1,
-            texels: vec![[255, 255, 0], [10, 0, 0]].into(),
-            coding: Coding::Srgb,
+            texels: Texels::Codes(vec![[255, 255, 0], [10, 0, 0]].into(), Coding::Srgb),
         });
         let material = fixture.material(painted, Rgb::BLACK);
         let floor = &mut fixture.description.meshes[2];

@@ -4,7 +4,7 @@ use common::Rgb;
 
 use super::Fault;
 use crate::bsdf::{ColorInput, NumberInput, Range, Value};
-use crate::scene::description::{Material, Texture};
+use crate::scene::description::{Material, Texels, Texture};
 
 /// Radiance beyond this is a mistake, and its products could overflow.
 const MAX_RADIANCE: f64 = 1e15;
@@ -13,9 +13,18 @@ const MAX_RADIANCE: f64 = 1e15;
 pub(super) fn check_texture(texture: &Texture) -> Result<(), Fault> {
     let texels = u64::from(texture.width) * u64::from(texture.height);
     if texels > 0 && texels == texture.texels.len() as u64 {
-        return Ok(());
+        let is_share = |numbers: &[[f32; 3]]| {
+            numbers.as_flattened().iter().all(|number| (0.0..=1.0).contains(number))
+        };
+        return match &texture.texels {
+            Texels::Numbers(numbers) if !is_share(numbers) => {
+                let message = format!("texture `{}`: its numbers must lie in [0, 1]", texture.name);
+                Err(Fault::new("", message))
+            }
+            Texels::Codes(..) | Texels::Numbers(_) => Ok(()),
+        };
     }
-    let Texture { name, width, height, texels, .. } = texture;
+    let Texture { name, width, height, texels } = texture;
     let count = texels.len();
     Err(Fault::new(
         "",
