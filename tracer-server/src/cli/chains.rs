@@ -197,10 +197,16 @@ impl ChainArgs {
         .collect();
         ensure!(
             idle.is_empty(),
-            "{} would change nothing: {} has no {}; leave it out, or use --integrator mlt",
+            "{} would change nothing: {} {}; leave it out, or use --integrator mlt",
             idle.join(", "),
             Integrator::from(integrator).name(),
-            if has_chains { "mutation strategies" } else { "Markov chains" },
+            if has_strategies {
+                "finds out by itself how many chains it needs"
+            } else if has_chains {
+                "has no mutation strategies"
+            } else {
+                "has no Markov chains"
+            },
         );
         Ok(())
     }
