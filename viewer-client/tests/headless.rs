@@ -3,7 +3,7 @@
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use host::picture::read_exr;
 use tempfile::TempDir;
@@ -88,6 +88,42 @@ fn commands_do_what_they_say_without_a_window() {
     let mut lines = printed.lines();
     assert!(lines.next().is_some_and(|line| line.starts_with("lvis://127.0.0.1:")), "{printed}");
     assert!(printed.contains("cornell"), "the state of the session: {printed}");
+}
+
+#[test]
+fn a_reader_of_the_log_that_goes_away_stops_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_viewer-client"))
+        .current_dir(folder.path())
+        .env("RUST_LOG", "debug")
+        .args(["--headless", "--screenshot-to", "picture.png", "--size", "640x400"])
+        .args(["--scene", "cornell", "--wait", "1"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program runs");
+    drop(child.stderr.take());
+    let ended = child.wait().expect("a child");
+    assert_eq!(ended.code(), Some(0), "nobody reads what it logs");
+    assert!(is_picture(&folder.path().join("picture.png")), "the picture is there");
+}
+
+#[test]
+fn output_that_cannot_be_printed_costs_no_picture() {
+    let Ok(full) = fs::OpenOptions::new().write(true).open("/dev/full") else {
+        tests::skip("there is no /dev/full");
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("script"), "copy status\n").expect("writable");
+    let status = Command::new(env!("CARGO_BIN_EXE_viewer-client"))
+        .current_dir(folder.path())
+        .args(["--headless", "--screenshot-to", "picture.png", "--size", "640x400"])
+        .args(["--scene", "cornell", "--wait", "1", "--run", "script"])
+        .stdout(full)
+        .status()
+        .expect("the program runs");
+    assert_ne!(status.code(), Some(0), "it was not printed");
+    assert!(is_picture(&folder.path().join("picture.png")), "the picture is there");
 }
 
 #[test]
