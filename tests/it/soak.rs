@@ -22,9 +22,10 @@ use crate::daemon::{PATIENCE, start_keeping};
 const SECONDS: u64 = 8;
 /// Growth of resident memory from one half to the other that is none: the allocator's own ways.
 const FLAT: u64 = 24 << 20;
-/// What the daemon may keep of what was shown, in bytes: so little that it is full early in the first
-/// half, and that filling it is no growth. With a daemon's usual budget, which takes minutes to fill,
-/// nobody could tell.
+/// What the daemon may keep of what was shown, in bytes.
+///
+/// So little that it is full early in the first half, and that filling it is no growth. With a daemon's
+/// usual budget, which takes minutes to fill, nobody could tell.
 const ARCHIVE: usize = 1 << 20;
 
 /// A viewer that follows the explorer, and what it has seen.

@@ -46,11 +46,12 @@ pub(super) fn read(file: &Path) -> anyhow::Result<Part> {
 
 /// Writes a film of replicates: beside its place, and then there, so that there is always a whole one.
 pub(super) fn write(place: &Place, part: &Part) -> anyhow::Result<()> {
-    place.write(|out| part.write(out)).map_err(|error| match error {
-        PartError::File(problem) => {
+    place.write(|out| part.write(out)).map_err(|error| {
+        if let PartError::File(problem) = error {
             anyhow!("cannot write `{}`: {problem}", place.path().display())
+        } else {
+            error.into()
         }
-        told => told.into(),
     })
 }
 

@@ -14,7 +14,7 @@ const NEAR: &[[f32; 3]] = &[[-400.0, 150.0, 400.0], [400.0, 150.0, 400.0]];
 
 pub(super) fn stage() -> Option<Stage> {
     Stage::new(SIZE)
-        .inspect_err(|error| tests::skip(&format!("nothing can draw here: {error:#}")))
+        .inspect_err(|error| ::tests::skip(&format!("nothing can draw here: {error:#}")))
         .ok()
 }
 

@@ -354,7 +354,7 @@ fn files_of_thousands_of_paths_are_read() {
     ] {
         let file = shared.join("paths").join(name);
         if !file.exists() {
-            tests::skip(&format!("{} is not there", file.display()));
+            ::tests::skip(&format!("{} is not there", file.display()));
             return;
         }
         let dump = read(&file).expect("a dump");
