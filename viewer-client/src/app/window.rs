@@ -191,6 +191,23 @@ struct Window {
     keeper: Option<Keeper>,
 }
 
+impl Window {
+    /// Saves what is to be remembered when it is time to, and closes the window where that was asked for.
+    fn settle(&mut self, ctx: &egui::Context) {
+        if let Some(keeper) = &mut self.keeper {
+            if let Some(wait) = keeper.update(self.viewer.preferences(), Instant::now()) {
+                ctx.request_repaint_after(wait);
+            }
+            if let Some(problem) = keeper.problem() {
+                self.viewer.complain(problem);
+            }
+        }
+        if self.viewer.is_closing() || self.is_ending.load(Ordering::Relaxed) {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+}
+
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         self.is_calm.store(self.viewer.is_frozen(), Ordering::Relaxed);
@@ -213,16 +230,14 @@ impl eframe::App for Window {
             }
         }
         self.viewer.ui(ui);
-        if let Some(keeper) = &mut self.keeper {
-            if let Some(wait) = keeper.update(self.viewer.preferences(), Instant::now()) {
-                ui.ctx().request_repaint_after(wait);
-            }
-            if let Some(problem) = keeper.problem() {
-                self.viewer.complain(problem);
-            }
-        }
-        if self.viewer.is_closing() || self.is_ending.load(Ordering::Relaxed) {
-            ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+        self.settle(ui.ctx());
+    }
+
+    /// A window that nobody sees is not drawn, but must still be closed, and what was changed just before
+    /// it was hidden be saved.
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        if ctx.input(|input| input.viewport().visible() == Some(false)) {
+            self.settle(ctx);
         }
     }
 

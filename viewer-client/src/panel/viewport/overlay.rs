@@ -194,10 +194,12 @@ mod tests {
         let title = "Connecting to a-machine-with-a-long-name.far-away.example:50061 …";
         let reason = "the daemon at a-machine-with-a-long-name.far-away.example:50061 encrypts: \
                       give the fingerprint that it told when it started (--fingerprint)";
-        let output = egui::Context::default().run_ui(egui::RawInput::default(), |ui| {
+        let mut output = egui::Context::default().run_ui(egui::RawInput::default(), |ui| {
             let painter = ui.painter().with_clip_rect(view);
             tell(&painter, view, Color32::WHITE, title, vec![reason.to_owned()]);
         });
+        // Nothing is drawn.
+        output.textures_delta.clear();
         let written = output.shapes.iter().map(|clipped| clipped.shape.visual_bounding_rect());
         let written = written.reduce(Rect::union).expect("something is told");
         assert!(view.contains_rect(written), "{written:?} lies in {view:?}");
