@@ -105,7 +105,7 @@ impl Destination {
     ) -> Result<(), ImageError> {
         let file = || self.path().display().to_string();
         self.place.write(|output| match self.format {
-            Format::Exr => write_exr(output, (image, planes), metadata)
+            Format::Exr => write_exr(output, image, planes, metadata)
                 .map_err(|source| ImageError::Exr { file: file(), source }),
             Format::Png => {
                 write_png(output, image).map_err(|source| ImageError::Png { file: file(), source })
@@ -138,7 +138,8 @@ fn exr_text(text: &str) -> Text {
 
 fn write_exr(
     output: &mut Output,
-    (image, planes): (&Film, &[Plane]),
+    image: &Film,
+    planes: &[Plane],
     metadata: &[(String, String)],
 ) -> Result<(), exr::error::Error> {
     let size = (image.width() as usize, image.height() as usize);
