@@ -12,6 +12,7 @@ mod event;
 mod filter;
 mod id;
 mod mesh;
+mod message;
 mod metric;
 mod session;
 mod steering;
@@ -28,7 +29,7 @@ pub use diagnostics::{Diagnostics, TileGrid, TileMaps, UNKNOWN};
 pub use event::{Event, VertexKind};
 pub use filter::condition;
 pub use filter::{
-    Attribute, Choice, CompiledFilter, Completion, Described, FilmCondition, Filter, FilterCounts,
+    Choice, CompiledFilter, Completion, Described, FilmCondition, Filter, FilterCounts,
     FilterError, FilterMaterial, FilterObject, FilterScene, FilterTally, FilterText, Form, Leaf,
     LightPathExpression, MAX_FILTER_BYTES, MAX_LEAVES, Name, NameList, NearestMiss, NumberPart,
     Place, Proposal, Selector, SelectorKind, Shortfall, Spot, Stop, Tree, Unit, VertexCheck,
@@ -36,7 +37,8 @@ pub use filter::{
 };
 pub use id::{ChainId, MaterialId, NoPathId, PathId, StrategyId};
 pub use mesh::{MaterialInfo, SceneFrame, SceneMesh, TexturePreview};
-pub use metric::{Floor, mean_of_smallest, mean_ratio, relative_errors, relative_mse};
+pub use message::TracerEvent;
+pub use metric::{Floor, known, mean_of_smallest, mean_ratio, relative_errors, relative_mse};
 pub use session::{
     ChainTotals, FailureCount, FilmFrame, FilmTile, FilterReply, Gap, Queue, Role, Statistics,
     StrategyStatistics, Welcome,

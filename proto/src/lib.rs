@@ -1,7 +1,7 @@
 //! The wire: schema, generated types, and checked conversions to and from the vocabulary.
 //!
 //! Wire types stop here. A program reads a [`v1::TracerMessage`] or [`v1::ViewerMessage`] and at once
-//! makes a [`TracerEvent`] or [`ViewerEvent`] of it; in those, sizes, counts, numbers and texts have
+//! makes a [`common::TracerEvent`] or [`ViewerEvent`] of it; in those, sizes, counts, numbers and texts have
 //! been checked. This crate knows no socket and neither program.
 
 // A new variant must be looked at wherever variants are told apart; tests may leave out what they do
@@ -12,8 +12,8 @@ mod convert;
 mod fingerprint;
 
 pub use convert::{
-    Hello, MAX_MESSAGE_BYTES, NumberedOrder, ReceivedScene, SceneAssembler, TracerEvent,
-    ViewerEvent, WantedFilter, WireError, scene_chunks, unchanged_scene,
+    Hello, MAX_MESSAGE_BYTES, NumberedOrder, ReceivedScene, SceneAssembler, ViewerEvent,
+    WantedFilter, WireError, scene_chunks, unchanged_scene,
 };
 
 pub use fingerprint::Fingerprint;

@@ -1,50 +1,115 @@
 //! The Rust twins of the structs in `wgsl/`.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, UVec4, Vec4};
+use glam::{Mat4, Vec2, Vec3, Vec4};
 
 /// Strategies that have a colour of their own; later ones share the last.
 pub const PALETTE_SIZE: usize = 16;
 /// Colours from low to high, between which the shader interpolates.
 pub const RAMP_SIZE: usize = 8;
 
-/// What every pipeline knows of the picture being drawn; twin of `Frame`, whose comments say what
-/// each component is.
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-#[repr(C)]
-pub struct FrameUniforms {
-    /// From scene units to clip space, depth reversed (1 near, 0 at infinity).
-    pub view_projection: Mat4,
-    /// The eye, and the distance of the near plane.
-    pub eye: Vec4,
-    /// The scene's up direction, and 1 for a dark theme.
-    pub up: Vec4,
-    /// Size of the picture in pixels, and its inverse.
-    pub viewport: Vec4,
-    /// Width of lines in pixels, opacity, opacity where hidden, opacity at the lens end.
-    pub line: Vec4,
-    /// Fading age in paths, brightness faded to, glow, radius of start dots in pixels.
-    pub fade: Vec4,
-    /// Darkest radiance in stops, inverse of the range in stops, radius of other dots, end tints.
-    pub tone: Vec4,
-    /// Opacity, opacity of surfaces that face away, wireframe strength, shading.
-    pub surface: Vec4,
-    /// Where the light is, and 1 for Phong's model.
-    pub light: Vec4,
-    /// 1 for textures.
-    pub paint: Vec4,
-    /// Newest ordinal, colour mode, 1 for dots at ends only, 1 for logarithmic scales.
-    pub count: UVec4,
-    /// The plane whose positive side is drawn.
-    pub clip: Vec4,
-    /// Depth cue: strength, begin, inverse reach; relative opacity of what the filter leaves out.
-    pub cue: Vec4,
-    /// The linear colour of all paths where colour says nothing.
-    pub constant: Vec4,
-    /// Linear colours that stay apart.
-    pub palette: [Vec4; PALETTE_SIZE],
-    /// Linear colours from low to high.
-    pub ramp: [Vec4; RAMP_SIZE],
+/// Declares a struct, and lists the offsets of its fields for the test that compares them with WGSL.
+macro_rules! twin {
+    ($(#[$meta:meta])* pub struct $name:ident {
+        $($(#[doc = $doc:literal])* pub $field:ident: $type:ty,)*
+    }) => {
+        $(#[$meta])*
+        pub struct $name {
+            $($(#[doc = $doc])* pub $field: $type,)*
+        }
+
+        impl $name {
+            /// Name and byte offset of every field.
+            #[cfg(test)]
+            pub(crate) const OFFSETS: &[(&str, usize)] =
+                &[$((stringify!($field), std::mem::offset_of!($name, $field)),)*];
+        }
+    };
+}
+
+twin! {
+    /// What every pipeline knows of the picture being drawn; twin of `Frame`. Lengths are in scene
+    /// units, widths and radii in pixels, colours linear.
+    #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+    #[repr(C)]
+    pub struct FrameUniforms {
+        /// From scene units to clip space, depth reversed (1 near, 0 at infinity).
+        pub view_projection: Mat4,
+        /// The eye.
+        pub eye: Vec3,
+        /// Distance of the near plane.
+        pub near: f32,
+        /// The scene's up direction.
+        pub up: Vec3,
+        /// 1 for a dark theme, 0 for a light one.
+        pub dark: f32,
+        /// Where the light is that surfaces are seen by.
+        pub light: Vec3,
+        /// 1 for Phong's model, 0 for one with a soft sky.
+        pub phong: f32,
+        /// The colour of all paths where colour says nothing.
+        pub constant: Vec3,
+        /// What crossing paths do: 0 covers, 1 adds light.
+        pub glow: f32,
+        /// The plane whose positive side is drawn.
+        pub clip: Vec4,
+        /// Width of lines.
+        pub line_width: f32,
+        /// Opacity of the newest, brightest line.
+        pub line_opacity: f32,
+        /// Relative opacity behind surfaces.
+        pub hidden_opacity: f32,
+        /// Relative opacity at the lens end.
+        pub lens_opacity: f32,
+        /// Radius of the dots at the light end.
+        pub start_radius: f32,
+        /// Radius of the dots at other vertices.
+        pub dot_radius: f32,
+        /// Opacity of surfaces.
+        pub surface_opacity: f32,
+        /// Relative opacity of surfaces that face away.
+        pub back_opacity: f32,
+        /// Strength of the wireframe.
+        pub edge_strength: f32,
+        /// 1 for shaded surfaces, 0 for their colours as they are.
+        pub shaded: f32,
+        /// Strength of the depth cue.
+        pub cue_strength: f32,
+        /// Distance where the depth cue begins.
+        pub cue_begin: f32,
+        /// Inverse of the distance over which the depth cue grows.
+        pub cue_inverse_reach: f32,
+        /// Newer paths after which a path has faded to 1/e.
+        pub fade_age: f32,
+        /// Relative opacity that paths fade to.
+        pub faded: f32,
+        /// log2 of the radiance that is drawn darkest.
+        pub darkest: f32,
+        /// Inverse of the stops between the darkest and the brightest radiance.
+        pub inverse_range: f32,
+        /// Relative opacity of paths that the filter does not match.
+        pub unmatched_opacity: f32,
+        /// Ordinal of the newest path.
+        pub newest: u32,
+        /// What the colour says.
+        pub color_mode: u32,
+        /// 1 for dots at the two ends only.
+        pub ends_only: u32,
+        /// 1 for logarithmic scales.
+        pub logarithmic: u32,
+        /// 1 to tint the two ends.
+        pub tint_ends: u32,
+        /// 1 to draw textures.
+        pub textured: u32,
+        /// Width and height of the picture in pixels.
+        pub size: Vec2,
+        /// What follows begins at a multiple of 16 bytes.
+        pub padding: [u32; 2],
+        /// Colours that stay apart.
+        pub palette: [Vec4; PALETTE_SIZE],
+        /// Colours from low to high.
+        pub ramp: [Vec4; RAMP_SIZE],
+    }
 }
 
 /// One vertex of a polyline: 24 bytes.

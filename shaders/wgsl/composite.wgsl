@@ -21,7 +21,7 @@ fn background(uv: vec2<f32>) -> vec3<f32> {
     let centre = length((uv - vec2<f32>(0.5, 0.45)) * vec2<f32>(1.0, 0.9));
     let dark = mix(vec3<f32>(0.022, 0.025, 0.032), vec3<f32>(0.006, 0.007, 0.010), centre * 1.4);
     let light = mix(vec3<f32>(0.86, 0.88, 0.90), vec3<f32>(0.66, 0.69, 0.73), centre * 1.3);
-    return select(light, dark, frame.up.w > 0.5);
+    return select(light, dark, frame.dark > 0.5);
 }
 
 // Linear up to the knee, then bent so that no highlight clips. The largest channel is bent and the

@@ -64,19 +64,19 @@ fn ramp(place: f32) -> vec3<f32> {
 
 fn hue_of_length(edges: u32) -> vec3<f32> {
     let e = max(f32(edges), 1.0);
-    return ramp(select((e - 1.0) / (LONGEST - 1.0), log2(e) / log2(LONGEST), frame.count.w == 1u));
+    return ramp(select((e - 1.0) / (LONGEST - 1.0), log2(e) / log2(LONGEST), frame.logarithmic == 1u));
 }
 
 fn radiance_code_to_brightness(code: f32) -> f32 {
     let stops = code * CODE_STOPS + CODE_LOWEST;
-    return clamp((stops - frame.tone.x) * frame.tone.y, 0.0, 1.0);
+    return clamp((stops - frame.darkest) * frame.inverse_range, 0.0, 1.0);
 }
 
 fn hue_of_luminance(code: f32) -> vec3<f32> {
     let place = radiance_code_to_brightness(code);
     // Linear in the radiance itself: each stop below the brightest halves it.
-    let linear = exp2((place - 1.0) / max(frame.tone.y, 1e-6));
-    return ramp(select(linear, place, frame.count.w == 1u));
+    let linear = exp2((place - 1.0) / max(frame.inverse_range, 1e-6));
+    return ramp(select(linear, place, frame.logarithmic == 1u));
 }
 
 fn hue_of_throughput(code: u32) -> vec3<f32> {
@@ -84,17 +84,17 @@ fn hue_of_throughput(code: u32) -> vec3<f32> {
         return UNKNOWN;
     }
     let stops = (f32(code) - 1.0) / THROUGHPUT_CODES + THROUGHPUT_LOWEST;
-    return ramp(select(exp2(stops), 1.0 - stops / FAINTEST, frame.count.w == 1u));
+    return ramp(select(exp2(stops), 1.0 - stops / FAINTEST, frame.logarithmic == 1u));
 }
 
 // 1 for the newest path, 1/e after the fading age.
 fn freshness(ordinal: u32) -> f32 {
-    let age = (frame.count.x - ordinal) & ((1u << ORDINAL_BITS) - 1u);
-    return exp(-f32(age) / max(frame.fade.x, 1.0));
+    let age = (frame.newest - ordinal) & ((1u << ORDINAL_BITS) - 1u);
+    return exp(-f32(age) / max(frame.fade_age, 1.0));
 }
 
 fn path_color(color: vec4<f32>, ordinal: u32, info: vec4<u32>) -> vec3<f32> {
-    switch frame.count.y {
+    switch frame.color_mode {
         case 1u: { return frame.palette[info.y & 15u].rgb; }
         case 2u: { return hue_of_length(info.y >> 4u); }
         case 3u: { return hue_of_luminance(color.a); }
@@ -102,7 +102,7 @@ fn path_color(color: vec4<f32>, ordinal: u32, info: vec4<u32>) -> vec3<f32> {
         case 5u: { return frame.palette[info.x >> KIND_SHIFT].rgb; }
         case 6u: { return frame.palette[info.z & 15u].rgb; }
         case 7u: { return frame.palette[info.z >> 4u].rgb; }
-        case 8u: { return frame.constant.rgb; }
+        case 8u: { return frame.constant; }
         case 9u: { return hue_of_throughput(info.w); }
         case 10u: { return ramp(f32(ordinal >> (ORDINAL_BITS + 4u)) / LONGEST_DWELL); }
         case 11u: { return ramp(f32((ordinal >> ORDINAL_BITS) & 15u) / 15.0); }
@@ -112,8 +112,8 @@ fn path_color(color: vec4<f32>, ordinal: u32, info: vec4<u32>) -> vec3<f32> {
 
 // How much is left of a line's opacity at a distance along the view.
 fn cue(distance: f32) -> f32 {
-    let depth = clamp((distance - frame.cue.y) * frame.cue.z, 0.0, 1.0);
-    return 1.0 - 0.95 * frame.cue.x * depth;
+    let depth = clamp((distance - frame.cue_begin) * frame.cue_inverse_reach, 0.0, 1.0);
+    return 1.0 - 0.95 * frame.cue_strength * depth;
 }
 
 // Colour and opacity of one end of a segment.
@@ -121,22 +121,22 @@ fn shade(color: vec4<f32>, ordinal: u32, info: vec4<u32>) -> vec4<f32> {
     if (info.x & ROLE_ANNOTATION) != 0u {
         return vec4<f32>(color.rgb * color.rgb, color.a);
     }
-    let fresh = mix(frame.fade.y, 1.0, freshness(ordinal));
+    let fresh = mix(frame.faded, 1.0, freshness(ordinal));
     var rgb = path_color(color, ordinal, info);
-    if frame.tone.w > 0.0 && (info.x & ROLE_START) != 0u {
+    if frame.tint_ends == 1u && (info.x & ROLE_START) != 0u {
         rgb = mix(rgb, START_TINT, 0.8);
-    } else if frame.tone.w > 0.0 && (info.x & ROLE_LAST) != 0u {
+    } else if frame.tint_ends == 1u && (info.x & ROLE_LAST) != 0u {
         rgb = mix(rgb, END_TINT, 0.8);
     }
     // Where colour does not say how bright a path is, opacity must not suggest it.
     var bright = 0.8;
-    if frame.count.y == 0u {
+    if frame.color_mode == 0u {
         bright = mix(0.22, 1.0, radiance_code_to_brightness(color.a));
     }
     if (info.x & ROLE_DIMMED) != 0u {
-        bright *= frame.cue.w;
+        bright *= frame.unmatched_opacity;
     }
-    return vec4<f32>(rgb, frame.line.y * fresh * bright);
+    return vec4<f32>(rgb, frame.line_opacity * fresh * bright);
 }
 
 fn line_vertex(s: Segment, corner: u32) -> Fragment {
@@ -162,14 +162,14 @@ fn line_vertex(s: Segment, corner: u32) -> Fragment {
     let annotation = (s.info_a.x & ROLE_ANNOTATION) != 0u;
     if !annotation && (s.info_b.x & ROLE_LAST) != 0u {
         // All paths end in one point, the pinhole: thinned out towards it, or it would blind.
-        color_a.a *= mix(frame.line.w, 1.0, 0.22);
-        color_b.a *= frame.line.w;
+        color_a.a *= mix(frame.lens_opacity, 1.0, 0.22);
+        color_b.a *= frame.lens_opacity;
     }
     if !annotation {
         color_a.a *= cue(a.w);
         color_b.a *= cue(b.w);
     }
-    let near = frame.eye.w;
+    let near = frame.near;
     if a.w < near && b.w < near {
         return out;
     }
@@ -183,7 +183,7 @@ fn line_vertex(s: Segment, corner: u32) -> Fragment {
         b = mix(b, a, t);
         color_b = mix(color_b, color_a, t);
     }
-    let half_size = 0.5 * frame.viewport.xy;
+    let half_size = 0.5 * frame.size;
     let pixel_a = a.xy / a.w * half_size;
     let pixel_b = b.xy / b.w * half_size;
     let delta = pixel_b - pixel_a;
@@ -191,7 +191,7 @@ fn line_vertex(s: Segment, corner: u32) -> Fragment {
     let direction = select(vec2<f32>(1.0, 0.0), delta / length_px, length_px > 1e-4);
     let normal = vec2<f32>(-direction.y, direction.x);
 
-    let wanted = select(frame.line.x, ANNOTATION_WIDTH, annotation);
+    let wanted = select(frame.line_width, ANNOTATION_WIDTH, annotation);
     let width = max(wanted, 1.0);
     // Half a pixel beyond the edge the coverage is zero; software pays for every fragment.
     let reach = 0.5 * width + 0.5;
@@ -219,7 +219,7 @@ fn vs_line(s: Segment, @builtin(vertex_index) corner: u32) -> Fragment {
 @vertex
 fn vs_line_hidden(s: Segment, @builtin(vertex_index) corner: u32) -> Fragment {
     var out = line_vertex(s, corner);
-    out.color *= frame.line.z;
+    out.color *= frame.hidden_opacity;
     return out;
 }
 
@@ -231,12 +231,12 @@ fn vs_dot(s: Segment, @builtin(vertex_index) corner: u32) -> Fragment {
     let ends = (s.info_a.x & ROLE_LAST) != 0u;
     // The lens is one point for all paths; their visible end is the vertex before it.
     let seen = (s.info_b.x & ROLE_LAST) != 0u && !ends;
-    let wanted = frame.count.z == 0u || starts || seen;
-    let radius = select(0.0, select(frame.tone.z, frame.fade.w, starts), wanted);
+    let wanted = frame.ends_only == 0u || starts || seen;
+    let radius = select(0.0, select(frame.dot_radius, frame.start_radius, starts), wanted);
     let clip = frame.view_projection * vec4<f32>(s.position_a, 1.0);
     let skipped = (s.info_a.x & ROLE_ANNOTATION) != 0u || ends || radius <= 0.0;
     let clipped = dot(frame.clip.xyz, s.position_a) + frame.clip.w < 0.0;
-    if skipped || clipped || clip.w < frame.eye.w {
+    if skipped || clipped || clip.w < frame.near {
         return out;
     }
     let reach = radius + 1.0;
@@ -245,11 +245,11 @@ fn vs_dot(s: Segment, @builtin(vertex_index) corner: u32) -> Fragment {
         select(-reach, reach, corner >= 2u),
     );
     var color = shade(s.color_a, s.ordinal_a, s.info_a);
-    if frame.count.z == 1u && frame.tone.w > 0.0 && seen {
+    if frame.ends_only == 1u && frame.tint_ends == 1u && seen {
         color = vec4<f32>(mix(color.rgb, END_TINT, 0.8), color.a);
     }
     let alpha = min(color.a * 1.6 * cue(clip.w), 1.0);
-    let shift = offset / (0.5 * frame.viewport.xy);
+    let shift = offset / (0.5 * frame.size);
     out.position = vec4<f32>(clip.xy + shift * clip.w, clip.z * DEPTH_BIAS, clip.w);
     out.color = vec4<f32>(color.rgb * alpha, alpha);
     out.across = vec3<f32>(offset * clip.w, clip.w);
@@ -263,7 +263,7 @@ fn fs_stroke(in: Fragment) -> @location(0) vec4<f32> {
     let coverage = clamp(in.half_width + 0.5 - distance, 0.0, 1.0);
     let color = in.color * coverage;
     // Glow: less of what lies behind is taken away, so that crossing paths add up like light.
-    return vec4<f32>(color.rgb, color.a * (1.0 - frame.fade.z));
+    return vec4<f32>(color.rgb, color.a * (1.0 - frame.glow));
 }
 
 // Weighted blending [McGuire and Bavoil 2013]: what no order of drawing changes.
@@ -280,7 +280,7 @@ fn fs_weighed(in: Fragment) -> Weighed {
     let coverage = clamp(in.half_width + 0.5 - distance, 0.0, 1.0);
     let color = in.color * coverage;
     // Near paths count more than far ones. Sums of half floats must not overflow.
-    let depth = clamp((in.across.z - frame.cue.y) * frame.cue.z, 0.0, 1.0);
+    let depth = clamp((in.across.z - frame.cue_begin) * frame.cue_inverse_reach, 0.0, 1.0);
     let weight = 4.0 * exp(-4.0 * depth);
     var out: Weighed;
     out.sum = vec4<f32>(color.rgb * weight, color.a);

@@ -56,7 +56,7 @@ fn edge(in: Surface) -> f32 {
 }
 
 fn sky(direction: vec3<f32>) -> vec3<f32> {
-    let height = 0.5 + 0.5 * dot(direction, frame.up.xyz);
+    let height = 0.5 + 0.5 * dot(direction, frame.up);
     return mix(vec3<f32>(0.20, 0.19, 0.18), vec3<f32>(0.62, 0.70, 0.82), height);
 }
 
@@ -64,13 +64,13 @@ fn sky(direction: vec3<f32>) -> vec3<f32> {
 fn painted(in: Surface) -> vec3<f32> {
     let place = vec2<f32>(in.texcoord.x, 1.0 - in.texcoord.y);
     let texel = textureSample(textures, texture_sampler, place, i32(max(in.kind.y, 1u)) - 1);
-    return select(in.color, texel.rgb, in.kind.y > 0u && frame.paint.x > 0.5);
+    return select(in.color, texel.rgb, in.kind.y > 0u && frame.textured == 1u);
 }
 
 // Light and shade of a preview with a soft sky.
 fn soft(color: vec3<f32>, normal: vec3<f32>, to_light: vec3<f32>) -> vec3<f32> {
     // On dark ground surfaces step back behind the paths.
-    let strength = mix(1.0, 0.55, frame.up.w);
+    let strength = mix(1.0, 0.55, frame.dark);
     let facing = max(dot(normal, to_light), 0.0);
     return strength * color * (0.14 + 0.36 * sky(normal) + 0.50 * facing);
 }
@@ -90,20 +90,20 @@ struct Lit {
 
 fn lit(in: Surface, front: bool) -> Lit {
     var out: Lit;
-    let to_eye = normalize(frame.eye.xyz - in.position);
+    let to_eye = normalize(frame.eye - in.position);
     var normal = normalize(in.normal);
     normal = select(-normal, normal, dot(normal, to_eye) >= 0.0);
     let facing = max(dot(normal, to_eye), 0.0);
     let grazing = pow(1.0 - facing, 3.0);
 
     let color = painted(in);
-    let to_light = normalize(frame.light.xyz - in.position);
+    let to_light = normalize(frame.light - in.position);
     var shaded = soft(color, normal, to_light);
-    if frame.light.w > 0.5 {
+    if frame.phong > 0.5 {
         shaded = phong(color, normal, to_light, to_eye);
     }
-    out.color = mix(color, shaded, frame.surface.w);
-    out.alpha = frame.surface.x;
+    out.color = mix(color, shaded, frame.shaded);
+    out.alpha = frame.surface_opacity;
     if in.kind.x == KIND_EMITTER {
         out.color = in.color * (2.2 + 0.8 * facing);
     } else if in.kind.x == KIND_MIRROR {
@@ -116,10 +116,10 @@ fn lit(in: Surface, front: bool) -> Lit {
         out.alpha *= clamp(0.10 + 0.65 * grazing + 0.5 * shine, 0.0, 0.9);
     }
     if !front && in.kind.x != KIND_TRANSPARENT {
-        out.alpha *= frame.surface.y;
+        out.alpha *= frame.back_opacity;
     }
-    out.edge = edge(in) * frame.surface.z;
-    let ink = select(vec3<f32>(0.02), vec3<f32>(0.75, 0.82, 0.9), frame.up.w > 0.5);
+    out.edge = edge(in) * frame.edge_strength;
+    let ink = select(vec3<f32>(0.02), vec3<f32>(0.75, 0.82, 0.9), frame.dark > 0.5);
     out.color = mix(out.color, ink, 0.55 * out.edge);
     out.alpha = max(out.alpha, 0.5 * out.edge);
     return out;

@@ -9,15 +9,14 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant};
 
-use common::{LeaseRequest, Notice, Order, Presence, Role};
-use proto::TracerEvent;
+use common::{FilterText, LeaseRequest, Notice, Order, Presence, Role, TracerEvent};
 use tracer_server::chain::EnsembleSettings;
 use tracer_server::daemon::{Daemon, DaemonOptions};
 use tracer_server::scene::Scene;
 use tracer_server::scene::load::load;
 use viewer_client::app::Viewer;
+use viewer_client::source::Source;
 use viewer_client::source::connection::{Greeting, Link, Peer, Session};
-use viewer_client::source::status::Status;
 
 /// Nothing here takes that long; what does hangs.
 const PATIENCE: Duration = Duration::from_mins(1);
@@ -93,9 +92,9 @@ impl Drop for Cable {
 #[ignore = "the other half of `a_pulled_cable_is_noticed_and_mended`"]
 fn the_far_end() {
     let Ok(address) = std::env::var(ADDRESS) else { return };
-    let mut viewer = Viewer::new(Status::new(address.clone(), false));
+    let mut viewer = Viewer::new(Source::daemon(address.clone(), false));
     let link = Link::start(Peer::open(address), Box::new(|_| {})).expect("a thread");
-    link.set_filter(1, FILTER.to_owned());
+    link.set_filter(1, FilterText::read(FILTER));
     viewer.set_link(link);
     let mut last = String::new();
     // No longer than the other half may take, whatever becomes of that.

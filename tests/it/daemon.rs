@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use common::{Event, PathBatch, Role, Statistics, VertexKind};
+use common::{Event, PathBatch, Role, Statistics, TracerEvent, VertexKind};
 use proto::v1::tracer_client::TracerClient;
-use proto::{Hello, ProtocolVersion, SceneAssembler, TracerEvent, ViewerEvent, v1};
+use proto::{Hello, ProtocolVersion, SceneAssembler, ViewerEvent, v1};
 use tonic::Streaming;
 use tonic::transport::{Channel, Endpoint};
 use tracer_server::chain::EnsembleSettings;
@@ -94,7 +94,7 @@ async fn the_chains_of_a_scene_are_seen_at_work() {
     let scene = assembler.finish().expect("whole").expect("new to us");
     assert_eq!((scene.hash, scene.frame), (welcome.scene_hash, welcome.frame));
 
-    let (mut paths, mut films, mut statistics) = (0, 0, Statistics::default());
+    let (mut paths, mut films, mut statistics) = (0, 0, Arc::<Statistics>::default());
     while paths < 1000 || films < 2 || statistics.totals.steps == 0 {
         match next(&mut stream).await.expect("open") {
             TracerEvent::Paths(batch) => {

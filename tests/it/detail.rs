@@ -1,8 +1,10 @@
 //! The numbers behind a path, asked of a real daemon over the network.
 
-use common::{ChainId, DetailReply, Notice, PathDetail, PathHeader, PathId, Role, VertexRecord};
-use common::{ExplorerCommand, FocusPath, Order, Seed};
-use proto::{NumberedOrder, TracerEvent, ViewerEvent};
+use common::{
+    ChainId, DetailReply, Notice, PathDetail, PathHeader, PathId, Role, TracerEvent, VertexRecord,
+};
+use common::{ExplorerCommand, Order, Seed};
+use proto::{NumberedOrder, ViewerEvent};
 use tracer_server::daemon::Daemon;
 use viewer_client::source::connection::{Greeting, Peer, Session};
 
@@ -112,14 +114,14 @@ async fn the_numbers_behind_a_path_are_its_own_and_everyone_may_ask() {
     // The explorer's paths have numbers, too.
     let order = Some(Order::Explorer(ExplorerCommand::Seed(Seed::Path(header.id))));
     assert!(driver.say(ViewerEvent::Order(NumberedOrder { request: 1, order })), "there is room");
-    let FocusPath { header: own, vertices: same, .. } =
-        until(&mut driver, "seed", |event| match event {
-            TracerEvent::FocusPath(path) => Some(path),
-            _ => None,
-        })
-        .await;
-    assert_eq!((own.id.chain, &same), (ChainId::EXPLORER, vertices), "the seed");
-    assert_eq!(ask(&mut observer, own.id).await, Ok(detail), "the same path by another name");
+    let seed = until(&mut driver, "seed", |event| match event {
+        TracerEvent::FocusPath(path) => Some(path),
+        _ => None,
+    });
+    let seed = seed.await;
+    let own = seed.header.id;
+    assert_eq!((own.chain, &seed.vertices), (ChainId::EXPLORER, vertices), "the seed");
+    assert_eq!(ask(&mut observer, own).await, Ok(detail), "the same path by another name");
     stop(daemon).await;
 }
 

@@ -1,13 +1,14 @@
 //! The explorer of a real daemon, driven and watched over the network.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use common::{
     ChainCommand, ChainState, ExplorerCommand, ExplorerState, FocusOutcome, FocusPath, FocusStep,
     Notice, Order, OrderReply, Pace, PathHeader, PathId, Role, Seed, SkipTo, StrategyId,
-    StrategySet, VertexRecord,
+    StrategySet, TracerEvent, VertexRecord,
 };
-use proto::{NumberedOrder, TracerEvent, ViewerEvent};
+use proto::{NumberedOrder, ViewerEvent};
 use tracer_server::daemon::Daemon;
 use viewer_client::source::connection::{Greeting, Peer, Session};
 
@@ -62,11 +63,11 @@ impl Visitor {
 
     fn hear(&mut self, event: TracerEvent) -> Option<OrderReply> {
         match event {
-            TracerEvent::FocusPath(path) => self.path = Some(path),
+            TracerEvent::FocusPath(path) => self.path = Some(Arc::unwrap_or_clone(path)),
             TracerEvent::FocusStep(step) => {
                 let path = self.path.take().expect("a whole path comes first");
                 self.path = Some(path.after(&step).expect("no step is missing"));
-                self.steps.push(step);
+                self.steps.push(Arc::unwrap_or_clone(step));
             }
             TracerEvent::FocusGap(steps) => panic!("{steps} steps are missing"),
             TracerEvent::Notice(Notice::Explorer(state)) => self.explorer = state,

@@ -1,10 +1,14 @@
 //! Filters in the daemon as it ships: exact paths, exact counts, changed while the paths stream.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use common::{CompiledFilter, Filter, FilterReply, FilterScene, Gap, PathBatch, Role, Statistics};
+use common::{
+    CompiledFilter, Filter, FilterReply, FilterScene, FilterText, Gap, PathBatch, Role, Statistics,
+    TracerEvent,
+};
 use proto::v1::tracer_client::TracerClient;
-use proto::{Hello, ProtocolVersion, SceneAssembler, TracerEvent, ViewerEvent, WantedFilter, v1};
+use proto::{Hello, ProtocolVersion, SceneAssembler, ViewerEvent, WantedFilter, v1};
 use tokio::sync::mpsc;
 use tokio_stream::wrappers::ReceiverStream;
 use tonic::transport::Channel;
@@ -42,7 +46,7 @@ impl Viewer {
     }
 
     async fn set_filter(&self, revision: u32, text: &str) {
-        let filter = WantedFilter { revision, text: text.to_owned() };
+        let filter = WantedFilter { revision, filter: FilterText::read(text) };
         self.outgoing.send(ViewerEvent::SetFilter(filter).into()).await.expect("connected");
     }
 
@@ -75,8 +79,8 @@ impl Viewer {
         &mut self,
         revision: u32,
         mut content: impl FnMut(&PathBatch) -> bool,
-    ) -> Statistics {
-        let mut statistics = Statistics::default();
+    ) -> Arc<Statistics> {
+        let mut statistics = Arc::<Statistics>::default();
         let mut is_content = false;
         // Batches that were ready when the filter changed come first.
         while !(is_content && statistics.filter.seen > 0) {
@@ -166,7 +170,7 @@ async fn a_filter_changes_while_paths_stream_and_counts_stay_exact() {
                 paths > 100 && seen > matched
             })
             .await;
-        let counts = statistics.filter;
+        let counts = statistics.filter.clone();
         assert!(seen > matched && matched > 100, "some match, some do not: {matched} of {seen}");
         let share = counts.matched_steps / counts.seen_steps;
         assert!((counts.energy_share - share).abs() < 1e-12, "{counts:?}");
@@ -186,7 +190,7 @@ async fn the_daemon_counts_what_a_viewer_would_count() {
     let mut everything = Viewer::join(&daemon, None).await.expect("welcome");
     let scene = filter_scene(&mut everything).await;
     let text = "any on material fern or start through box(-100, -100, -100, 100, 100, 0)";
-    let first = WantedFilter { revision: 5, text: text.to_owned() };
+    let first = WantedFilter { revision: 5, filter: FilterText::read(text) };
     let mut selected = Viewer::join(&daemon, Some(first)).await.expect("welcome");
     let filter = compiled(text, &scene);
     let (mut by_hand, mut ranges) = (BTreeMap::new(), Vec::new());
@@ -225,7 +229,7 @@ async fn the_daemon_counts_what_a_viewer_would_count() {
 #[tokio::test]
 async fn what_is_no_filter_is_refused_with_its_place_and_harms_nothing() {
     let daemon = start();
-    let filter = |text: &str| Some(WantedFilter { revision: 1, text: text.to_owned() });
+    let filter = |text: &str| Some(WantedFilter { revision: 1, filter: FilterText::read(text) });
     let status = Viewer::join(&daemon, filter("any on material ferm")).await.map(|_| ());
     let status = status.expect_err("there is no such material");
     assert_eq!(status.code(), Code::InvalidArgument);
@@ -239,7 +243,7 @@ async fn what_is_no_filter_is_refused_with_its_place_and_harms_nothing() {
     let error = reply.error.expect("no number");
     assert_eq!((reply.revision, error.span), (2, 9..14), "{}", error.message);
     let statistics = viewer.watch(1, |batch| !batch.is_empty()).await;
-    let counts = statistics.filter;
+    let counts = statistics.filter.clone();
     assert!(
         0 < counts.matched && counts.matched < counts.seen,
         "the first is in force: {counts:?}"

@@ -8,8 +8,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use common::{ExplorerCommand, Order, Role, Seed, Statistics};
-use proto::{NumberedOrder, TracerEvent, ViewerEvent};
+use common::{ExplorerCommand, Order, Role, Seed, Statistics, TracerEvent};
+use proto::{NumberedOrder, ViewerEvent};
 use tokio::task::JoinSet;
 use tracer_server::chain::EnsembleSettings;
 use tracer_server::daemon::{Daemon, DaemonOptions};
@@ -40,10 +40,10 @@ async fn join(address: &str, greeting: Greeting) -> Session {
 }
 
 /// The newest statistics, and how long the whole snapshot took.
-async fn look(address: &str) -> (Statistics, Duration) {
+async fn look(address: &str) -> (Arc<Statistics>, Duration) {
     let came = Instant::now();
     let mut session = join(address, Greeting::default()).await;
-    let mut found = Statistics::default();
+    let mut found = Arc::<Statistics>::default();
     loop {
         match session.next().await.expect("connected") {
             TracerEvent::Statistics(statistics) => found = statistics,
@@ -150,7 +150,7 @@ async fn measure(
     over.store(true, Ordering::Relaxed);
     reading.join_all().await;
     drop(stalled);
-    [before, after]
+    [before, after].map(Arc::unwrap_or_clone)
 }
 
 /// Mutations a second of wall clock and of the chains' own processor time.

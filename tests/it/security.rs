@@ -1,8 +1,8 @@
 //! Who gets in, and who does not.
 
+use common::TracerEvent;
 use std::time::Duration;
 
-use proto::TracerEvent;
 use tracer_server::hub::HubLimits;
 use tracer_server::service::{Access, Certificate, Security, Server, Token};
 use viewer_client::source::connection::{Bearer, Greeting, Peer, Session, SessionError, Trust};
@@ -87,10 +87,42 @@ async fn plain_speech_is_not_understood_and_tokens_stay_secret() {
     let (server, _) = guarded();
     let plain = peer(&server, Trust::Plain, DRIVER);
     let complaint = is_kept_out(&plain).await.to_string();
-    assert!(complaint.contains("--fingerprint"), "{complaint}");
+    assert!(complaint.contains("encrypts") && complaint.contains("--fingerprint"), "{complaint}");
     let elsewhere = Peer { address: "192.0.2.1:1".to_owned(), ..plain };
     let complaint = is_kept_out(&elsewhere).await;
     assert!(matches!(complaint, SessionError::ExposedToken(_)), "{complaint}");
+    fixture::stop(server).await;
+}
+
+#[tokio::test]
+async fn who_wants_encryption_of_a_daemon_without_is_told_so() {
+    let server = fixture::start_guarded(HubLimits::default(), Security::default());
+    let other = Certificate::self_signed(vec!["localhost".to_owned()]).expect("made");
+    for trust in [Trust::Pinned(other.fingerprint()), Trust::Authority(other.pem().0.to_owned())] {
+        let complaint = is_kept_out(&peer(&server, trust, "")).await.to_string();
+        assert!(complaint.contains("does not encrypt"), "{complaint}");
+    }
+    fixture::stop(server).await;
+}
+
+#[tokio::test]
+async fn what_is_wrong_at_the_door_is_told_apart() {
+    let (server, certificate) = guarded();
+    let pinned = Trust::Pinned(certificate.fingerprint());
+    let wrong = is_kept_out(&peer(&server, pinned.clone(), "the-token-of-nobody-at-all")).await;
+    assert!(wrong.to_string().contains("a wrong token"), "{wrong}");
+    let none = is_kept_out(&peer(&server, pinned, "")).await;
+    assert!(none.to_string().contains("no token"), "{none}");
+    fixture::stop(server).await;
+
+    let limits = HubLimits { viewers: 1, ..HubLimits::default() };
+    let server = fixture::start_guarded(limits, Security::default());
+    let plain = peer(&server, Trust::Plain, "");
+    let first = fixture::soon("the greeting", Session::open(&plain, Greeting::default())).await;
+    let first = first.expect("the only place");
+    let full = is_kept_out(&plain).await.to_string();
+    assert!(full.contains("1 viewer"), "{full}");
+    first.leave().await;
     fixture::stop(server).await;
 }
 

@@ -8,10 +8,10 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use common::{
-    ChainCommand, ExplorerCommand, FocusOutcome, FocusPath, Notice, Order, Role, Seed, SkipTo,
-    StrategyId,
+    ChainCommand, ExplorerCommand, FilterText, FocusOutcome, FocusPath, Notice, Order, Role, Seed,
+    SkipTo, StrategyId, TracerEvent,
 };
-use proto::{NumberedOrder, TracerEvent, ViewerEvent, WantedFilter};
+use proto::{NumberedOrder, ViewerEvent, WantedFilter};
 use tokio::task::JoinSet;
 use tokio_util::task::TaskTracker;
 use viewer_client::source::connection::{Greeting, Peer, Session};
@@ -39,7 +39,7 @@ impl Follower {
         match event {
             TracerEvent::FocusPath(path) => {
                 self.of_epoch = (path.header.id.epoch, 0, 0);
-                self.path = Some(path.clone());
+                self.path = Some(FocusPath::clone(path));
             }
             TracerEvent::FocusStep(step) => {
                 let path = self.path.take().expect("a whole path comes first");
@@ -162,7 +162,10 @@ async fn churn(address: String, over: Arc<AtomicBool>, number: u32) -> u64 {
                 TracerEvent::SnapshotEnd => {
                     assert!(filtered || !came_back, "it comes back to its filter");
                     returns += u64::from(came_back);
-                    let filter = WantedFilter { revision: round + 1, text: text.clone() };
+                    let filter = WantedFilter {
+                        revision: round + 1,
+                        filter: FilterText::read(text.as_str()),
+                    };
                     assert!(session.say(ViewerEvent::SetFilter(filter)), "the daemon listens");
                 }
                 _ => {}

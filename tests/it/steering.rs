@@ -4,10 +4,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use common::{
-    ChainCommand, Gaze, LeaseEvent, LeaseNotice, LeaseRequest, Notice, Order, OrderReply, Presence,
-    Role,
+    ChainCommand, FilterText, Gaze, LeaseEvent, LeaseNotice, LeaseRequest, Notice, Order,
+    OrderReply, Presence, Role, TracerEvent,
 };
-use proto::{NumberedOrder, TracerEvent, ViewerEvent, WantedFilter};
+use proto::{NumberedOrder, ViewerEvent, WantedFilter};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::task::JoinSet;
 use tokio_util::sync::CancellationToken;
@@ -177,7 +177,7 @@ async fn the_observers_token_opens_no_steering() {
 #[tokio::test]
 async fn a_viewer_comes_back_to_its_filter_and_its_role() {
     let (server, _orders) = start(Access::default());
-    let filter = WantedFilter { revision: 5, text: "edges >= 3".to_owned() };
+    let filter = WantedFilter { revision: 5, filter: FilterText::read("edges >= 3") };
     let greeting = Greeting { filter: Some(filter), focus: true, ..named("anna", Role::Driver) };
     let anna = Member::join(&server, greeting).await;
     let mut ben = Member::join(&server, named("ben", Role::Observer)).await;

@@ -3,18 +3,12 @@
 use std::path::Path;
 
 use common::Rgb;
-use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes,
-    Text, Vec2, WritableImage as _, read_first_rgba_layer_from_file,
-};
 use host::file::{FileError, Output, Place};
+use host::picture::{self, Extras, Picture, PictureError, Plane};
 use image::{ImageBuffer, ImageFormat, Rgb as Pixel8};
 use thiserror::Error;
 
 use crate::film::Film;
-
-/// Widest and highest image that is read, in pixels.
-const MAX_SIDE: usize = 1 << 15;
 
 /// Why an image could not be read or written.
 #[derive(Debug, Error)]
@@ -25,25 +19,25 @@ pub enum ImageError {
     /// The file cannot be written.
     #[error(transparent)]
     File(#[from] FileError),
+    /// The file cannot be read.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
     /// The EXR library refused.
-    #[error("`{file}`: {source}")]
+    #[error("`{file}`: {problem}")]
     Exr {
         /// The file.
         file: String,
         /// What it said.
-        source: exr::error::Error,
+        problem: exr::error::Error,
     },
     /// The PNG library refused.
-    #[error("`{file}`: {source}")]
+    #[error("`{file}`: {problem}")]
     Png {
         /// The file.
         file: String,
         /// What it said.
-        source: image::ImageError,
+        problem: image::ImageError,
     },
-    /// Too large to be an image of ours.
-    #[error("`{0}` is larger than {MAX_SIDE} pixels a side")]
-    TooLarge(String),
 }
 
 /// What an image file may hold.
@@ -53,15 +47,6 @@ pub enum Format {
     Exr,
     /// Exposed, sRGB-encoded and rounded to eight bits.
     Png,
-}
-
-/// One more number for every pixel of an image.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Plane {
-    /// Its name, such as `error`: the channel is `error.Y`.
-    pub name: &'static str,
-    /// Row by row from the top.
-    pub values: Vec<f32>,
 }
 
 /// Where an image is to go and in what format, known before there is one.
@@ -105,11 +90,14 @@ impl Destination {
     ) -> Result<(), ImageError> {
         let file = || self.path().display().to_string();
         self.place.write(|output| match self.format {
-            Format::Exr => write_exr(output, image, planes, metadata)
-                .map_err(|source| ImageError::Exr { file: file(), source }),
-            Format::Png => {
-                write_png(output, image).map_err(|source| ImageError::Png { file: file(), source })
+            Format::Exr => {
+                let size = [image.width(), image.height()].map(|side| side as usize);
+                let pixel = |x: usize, y: usize| image.pixels()[y * size[0] + x].to_f32();
+                picture::write_exr(output, size, pixel, &Extras { planes, metadata })
+                    .map_err(|problem| ImageError::Exr { file: file(), problem })
             }
+            Format::Png => write_png(output, image)
+                .map_err(|problem| ImageError::Png { file: file(), problem }),
         })
     }
 }
@@ -129,37 +117,6 @@ impl Format {
 /// Writes `image` in the format of the file's name. `metadata` goes into EXR headers.
 pub fn write(path: &Path, image: &Film, metadata: &[(String, String)]) -> Result<(), ImageError> {
     Destination::find(path)?.write(image, &[], metadata)
-}
-
-/// Text of any script, in UTF-8. What readers of old expect, Latin-1, is the same for ASCII.
-fn exr_text(text: &str) -> Text {
-    Text::from_slice_unchecked(text.as_bytes())
-}
-
-fn write_exr(
-    output: &mut Output,
-    image: &Film,
-    planes: &[Plane],
-    metadata: &[(String, String)],
-) -> Result<(), exr::error::Error> {
-    let size = (image.width() as usize, image.height() as usize);
-    let color = |(index, name): (usize, &str)| {
-        let values = image.pixels().iter().map(|pixel| pixel.to_f32()[index]).collect();
-        AnyChannel::new(name, FlatSamples::F32(values))
-    };
-    let plane = |plane: &Plane| {
-        let name = format!("{}.Y", plane.name);
-        AnyChannel::new(name.as_str(), FlatSamples::F32(plane.values.clone()))
-    };
-    let colors = ["R", "G", "B"].into_iter().enumerate().map(color);
-    let channels = AnyChannels::sort(colors.chain(planes.iter().map(plane)).collect());
-    let mut attributes = LayerAttributes::named("");
-    attributes.software_name = Some(Text::from("Lvis"));
-    for (key, value) in metadata {
-        attributes.other.insert(exr_text(key), AttributeValue::Text(exr_text(value)));
-    }
-    let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
-    Image::from_layer(layer).write().to_buffered(output)
 }
 
 /// The exposure that brings the brighter parts of an image just below white: one over its 98th
@@ -189,27 +146,18 @@ fn write_png(output: &mut Output, image: &Film) -> Result<(), image::ImageError>
     bytes.write_to(output, ImageFormat::Png)
 }
 
-/// Reads the first layer of an EXR file.
+/// Reads the picture of an EXR file. A pixel that the file has no value for is not a number.
 pub fn read_exr(path: &Path) -> Result<Film, ImageError> {
-    let loaded = read_first_rgba_layer_from_file(
-        path,
-        |size, _| {
-            let fits = size.0 <= MAX_SIDE && size.1 <= MAX_SIDE;
-            fits.then(|| Film::new(size.0 as u32, size.1 as u32))
-        },
-        |film, Vec2(x, y), (r, g, b, _): (f32, f32, f32, f32)| {
-            if let Some(film) = film {
-                film.splat(y * film.width() as usize + x, Rgb::from([r, g, b]));
-            }
-        },
-    );
-    let file = path.display().to_string();
-    let image = loaded.map_err(|source| ImageError::Exr { file: file.clone(), source })?;
-    image.layer_data.channel_data.pixels.ok_or(ImageError::TooLarge(file))
+    let Picture { width, height, pixels } = picture::read_exr(path)?;
+    let mut film = Film::new(width as u32, height as u32);
+    pixels.into_iter().enumerate().for_each(|(i, pixel)| film.splat(i, pixel));
+    Ok(film)
 }
 
 #[cfg(test)]
 mod tests {
+    use exr::prelude::{AttributeValue, Text};
+
     use super::*;
 
     fn gradient() -> Film {
@@ -238,24 +186,6 @@ mod tests {
         assert_eq!(names, ["B", "G", "R", "error.Y"], "channels");
         let seed = meta.headers[0].own_attributes.other.get(&Text::from("lvis.seed"));
         assert_eq!(seed, Some(&AttributeValue::Text(Text::from("7"))), "metadata survives");
-    }
-
-    /// Names of scenes come from files' names, which may be in any script.
-    #[test]
-    fn metadata_may_be_in_any_script() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let path = folder.path().join("сцена – l’été.exr");
-        let long = "場".repeat(300);
-        for name in ["сцена", "l’été", "Küche", "a\nb\0c", "", &long] {
-            let metadata = [("lvis.scene".to_owned(), name.to_owned())];
-            write(&path, &gradient(), &metadata).expect("an EXR file is written");
-            let back = read_exr(&path).expect("and read");
-            assert_eq!(back.pixels()[14].to_f32(), gradient().pixels()[14].to_f32(), "{name}");
-            let meta = exr::meta::MetaData::read_from_file(&path, true).expect("a sound header");
-            let read = meta.headers[0].own_attributes.other.get(&Text::from("lvis.scene"));
-            let Some(AttributeValue::Text(read)) = read else { panic!("{name}: {read:?}") };
-            assert_eq!(read.as_slice(), name.as_bytes(), "UTF-8");
-        }
     }
 
     #[test]

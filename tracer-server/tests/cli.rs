@@ -4,9 +4,9 @@ use std::io::{BufRead as _, BufReader};
 use std::process::{Child, ChildStdout, Command, Output, Stdio};
 use std::time::Duration;
 
-use common::Role;
+use common::{Role, TracerEvent};
 use proto::v1::tracer_client::TracerClient;
-use proto::{Hello, ProtocolVersion, TracerEvent, ViewerEvent, v1};
+use proto::{Hello, ProtocolVersion, ViewerEvent, v1};
 
 /// Nothing here takes that long; what does hangs.
 const PATIENCE: Duration = Duration::from_mins(1);

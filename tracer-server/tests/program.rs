@@ -9,9 +9,9 @@ use std::process::{Child, ChildStderr, Command, Output, Stdio};
 use std::sync::mpsc::sync_channel;
 use std::time::{Duration, Instant};
 
-use common::Role;
+use common::{Role, TracerEvent};
 use proto::v1::tracer_client::TracerClient;
-use proto::{Hello, ProtocolVersion, TracerEvent, ViewerEvent, v1};
+use proto::{Hello, ProtocolVersion, ViewerEvent, v1};
 use tracer_server::film::Film;
 use tracer_server::image_file::read_exr;
 

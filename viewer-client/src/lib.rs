@@ -8,7 +8,6 @@ pub mod app;
 pub mod camera;
 pub mod command;
 pub mod draw;
-pub mod habits;
 pub mod imaging;
 pub mod keys;
 pub mod panel;

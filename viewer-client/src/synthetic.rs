@@ -1,15 +1,16 @@
 //! A made-up daemon's messages, for tests.
 
-use std::collections::VecDeque;
+use std::sync::Arc;
 
 use common::{
     BatchBuilder, BatchLimits, Camera, CameraPose, Event, FilmTile, FilterObject, MaterialInfo,
-    PathBatch, PathHeader, Rgb, Role, SceneFrame, SceneMesh, VertexKind, VertexRecord, Welcome,
+    PathBatch, PathHeader, Rgb, Role, SceneFrame, SceneMesh, TracerEvent, VertexKind, VertexRecord,
+    Welcome,
 };
 use glam::DVec3;
 use proto::ReceivedScene;
 
-use crate::source::connection::Delivery;
+use crate::source::connection::{Arrival, Inbox};
 use crate::source::status::LinkState;
 
 /// A camera in front of the scene, which looks along -z.
@@ -92,21 +93,42 @@ pub(crate) fn batch(paths: &[&[[f32; 3]]]) -> PathBatch {
     builder.finish().expect("a batch with paths")
 }
 
-/// Everything that a viewer gets in its first second.
+/// What a viewer gets in its first second.
+#[derive(Clone, Debug)]
+pub(crate) struct Delivery {
+    pub(crate) welcome: Welcome,
+    pub(crate) scene: ReceivedScene,
+    pub(crate) film: FilmTile,
+    pub(crate) batches: Vec<PathBatch>,
+    /// What the tracer says besides.
+    pub(crate) more: Vec<TracerEvent>,
+}
+
+impl Delivery {
+    /// Puts all of it in.
+    pub(crate) fn put(self, inbox: &Inbox) {
+        let Self { welcome, scene, film, batches, more } = self;
+        inbox.push(Arrival::Link(LinkState::Connected));
+        inbox.put(TracerEvent::Welcome(Box::new(welcome)));
+        inbox.push(Arrival::Scene(Box::new(scene)));
+        inbox.put(TracerEvent::Film(film));
+        let paths = batches.into_iter().map(|batch| TracerEvent::Paths(Arc::new(batch)));
+        for event in more.into_iter().chain(paths) {
+            inbox.put(event);
+        }
+    }
+}
+
+/// Everything, with these paths.
 pub(crate) fn delivery(paths: &[&[[f32; 3]]]) -> Delivery {
     let rgb = [0.1, 0.3, 0.6].repeat(40 * 30);
-    let tile = FilmTile { sequence: 1, width: 40, height: 30, first_row: 0, steps: 2400, rgb };
     let welcome = welcome();
+    let (hash, frame) = (welcome.scene_hash.clone(), welcome.frame);
     Delivery {
-        state: Some(LinkState::Connected),
-        scene: Some(ReceivedScene {
-            hash: welcome.scene_hash.clone(),
-            frame: welcome.frame,
-            mesh: mesh(),
-        }),
-        welcome: Some(welcome),
-        batches: VecDeque::from([batch(paths)]),
-        film: [(0, tile)].into(),
-        ..Delivery::default()
+        welcome,
+        scene: ReceivedScene { hash, frame, mesh: mesh() },
+        film: FilmTile { sequence: 1, width: 40, height: 30, first_row: 0, steps: 2400, rgb },
+        batches: vec![batch(paths)],
+        more: Vec::new(),
     }
 }

@@ -2,17 +2,16 @@
 
 use std::time::Instant;
 
-use common::{Attendee, Diagnostics, FilterCounts};
+use common::{Attendee, Diagnostics, FilterCounts, FilterScene};
 
 use crate::camera::ViewCamera;
-use crate::command::PanelName;
 use crate::imaging::film::Film;
 use crate::imaging::{FlipMap, Reference};
 use crate::settings::Settings;
 use crate::source::model::Model;
 use crate::source::playback::Playback;
 use crate::source::selection::{Names, Selection};
-use crate::source::status::Status;
+use crate::source::status::{LinkState, Status};
 use crate::source::steering::Moment;
 use crate::source::store::Store;
 
@@ -51,6 +50,8 @@ pub struct World<'a> {
     pub counted: Option<&'a FilterCounts>,
     /// The scene, once it has come.
     pub model: Option<&'a Model>,
+    /// What filters may ask for of it.
+    pub filter_scene: &'a FilterScene,
     /// When the frame began.
     pub now: Instant,
 }
@@ -66,16 +67,9 @@ impl World<'_> {
         self.counted.or_else(|| self.status.statistics.as_ref().map(|s| &s.filter))
     }
 
-    /// True where a panel has something to show: a file of paths has no chains that run.
-    pub fn has_use_for(&self, panel: PanelName) -> bool {
-        match panel {
-            PanelName::Playback => self.playback.is_some(),
-            PanelName::Explorer
-            | PanelName::Statistics
-            | PanelName::Diagnostics
-            | PanelName::Image => self.playback.is_none(),
-            PanelName::Filter | PanelName::Cloud | PanelName::Scene | PanelName::Path => true,
-        }
+    /// True where there are chains that run, or will be once a daemon answers.
+    pub fn has_chains(&self) -> bool {
+        self.playback.is_none() && self.status.link != LinkState::Idle
     }
 
     /// The other viewers of the daemon.

@@ -5,11 +5,8 @@
 
 use std::ops::Range;
 
-use super::form::{NameList, Word};
-use super::lpe;
-use super::parse::Quoted;
-use super::print::escaped;
-use super::reader::{Reader, in_word};
+use super::offers::{Offer, Offers, Rank};
+use super::reader::Reader;
 use super::{FilterScene, Leaf, MAX_FILTER_BYTES};
 
 /// Signs without a choice, such as the parenthesis behind `sphere`, that are written along with a word.
@@ -102,125 +99,4 @@ fn is_inside(text: &str) -> bool {
         }
     }
     quoted || text.ends_with('(')
-}
-
-/// Collects what may come at the end of a text.
-#[derive(Debug)]
-pub(super) struct Offers<'a> {
-    scene: &'a FilterScene,
-    pub(super) found: Vec<Offer>,
-    /// Something else may stand at the end of the text, such as a number.
-    pub(super) open: bool,
-}
-
-/// What the reader would take at the end of a text.
-#[derive(Debug)]
-pub(super) struct Offer {
-    /// Where it begins.
-    pub(super) at: usize,
-    pub(super) text: String,
-    /// The text as it stands behind others.
-    glued: String,
-    meaning: &'static str,
-    pub(super) rank: Rank,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Rank {
-    Usual,
-    /// A name of the scene.
-    Name,
-    /// One of a long list, which would push others away.
-    Last,
-    /// A sign that is only written along with others.
-    Silent,
-}
-
-impl<'a> Offers<'a> {
-    fn new(scene: &'a FilterScene) -> Self {
-        Self { scene, found: Vec::new(), open: false }
-    }
-
-    fn push(&mut self, (at, rest): (usize, &str), text: String, meaning: &'static str, rank: Rank) {
-        if goes_on(&text, rest) {
-            let glued = format!(" {text}");
-            self.found.push(Offer { at, text, glued, meaning, rank });
-        }
-    }
-
-    /// A word that may stand at `at`, where `rest` is what is there of it.
-    pub(super) fn word(&mut self, place: (usize, &str), word: &str, meaning: &'static str) {
-        self.push(place, word.to_owned(), meaning, Rank::Usual);
-    }
-
-    /// One of many words.
-    pub(super) fn last(&mut self, place: (usize, &str), word: &Word) {
-        self.push(place, word.text.to_owned(), word.meaning, Rank::Last);
-    }
-
-    /// A sign, with the blanks around it; one without a meaning is not told.
-    pub(super) fn sign(
-        &mut self,
-        (at, rest): (usize, &str),
-        sign: &'static str,
-        meaning: &'static str,
-    ) {
-        let text = sign.trim().to_owned();
-        if goes_on(&text, rest) {
-            let rank = if meaning.is_empty() { Rank::Silent } else { Rank::Usual };
-            self.found.push(Offer { at, text, glued: sign.to_owned(), meaning, rank });
-        }
-    }
-
-    /// The names of a list.
-    pub(super) fn names(
-        &mut self,
-        (at, rest): (usize, &str),
-        list: NameList,
-        write: impl Fn(&str) -> String,
-    ) {
-        self.leave_open(rest.is_empty());
-        for name in self.scene.names(list) {
-            let text = write(name);
-            let is_bare = goes_on(name, rest);
-            if is_bare || goes_on(&text, rest) {
-                let glued = format!(" {text}");
-                let meaning = list.kind();
-                self.found.push(Offer { at, text, glued, meaning, rank: Rank::Name });
-            }
-        }
-    }
-
-    /// Something may stand here that cannot be offered.
-    pub(super) fn leave_open(&mut self, is_end: bool) {
-        self.open |= is_end;
-    }
-
-    /// What may come in an expression that is still being written.
-    pub(super) fn expression(&mut self, quoted: &Quoted) {
-        self.open = true;
-        let (inner, is_whole) = lpe::offers(&quoted.text, Self::new(self.scene));
-        for offer in inner.into_iter().flat_map(|inner| inner.found) {
-            let text = escaped(&offer.text, '"');
-            self.found.push(Offer { at: quoted.outer(offer.at), text, ..offer });
-        }
-        if is_whole {
-            let at = quoted.outer(quoted.text.len());
-            self.push((at, ""), "\"".to_owned(), "closes", Rank::Last);
-        }
-    }
-}
-
-/// Whether a text that ends in `rest` goes on with `text`.
-fn goes_on(text: &str, rest: &str) -> bool {
-    let mut letters = text.chars();
-    let begins = rest.chars().all(|own| {
-        letters.next().is_some_and(|letter| letter.to_lowercase().eq(own.to_lowercase()))
-    });
-    begins && letters.next().is_some()
-}
-
-/// Whether a word may stand right behind `before`, which another one may end.
-pub(super) fn may_follow(before: &str, word: &str) -> bool {
-    matches!(word, "(" | ")" | "," | "..") || !before.ends_with(|c: char| in_word(c) || c == '"')
 }

@@ -7,44 +7,40 @@
 //! the scene's own; the [`CompiledFilter`] then judges paths without allocating. [`FilterTally`]
 //! counts what it saw, and which share of the image's energy that is.
 
-mod attribute;
 mod compile;
 mod complete;
 pub mod condition;
 mod error;
-mod form;
 mod lpe;
 mod miss;
+mod offers;
 mod parse;
-mod place;
 mod print;
+mod quote;
 mod reader;
 mod scene;
 mod selector;
 mod tally;
 mod text;
 mod tree;
-mod volume;
+mod word;
 
-pub use attribute::Attribute;
 pub use compile::{CompiledFilter, MAX_LEAVES};
 pub use complete::{Choice, Completion, complete};
-pub use condition::Leaf;
 pub use condition::film::FilmCondition;
+pub use condition::place::Place;
 pub use condition::vertex::{VertexCheck, VertexTest};
+pub use condition::volume::Volume;
+pub use condition::{Described, Form, Leaf, NumberPart, Proposal, Spot, Unit};
 pub use error::FilterError;
-pub use form::{
-    Described, Form, NameList, NumberPart, Proposal, Spot, Stop, Unit, Walk, Word, Worded,
-};
 pub use lpe::LightPathExpression;
 pub use miss::{NearestMiss, Shortfall};
-pub use place::Place;
 pub use scene::{FilterMaterial, FilterObject, FilterScene, is_same_strategy};
 pub use selector::{Selector, SelectorKind};
 pub use tally::{FilterCounts, FilterTally};
 pub use text::{FilterText, MAX_FILTER_BYTES};
 pub use tree::Tree;
-pub use volume::Volume;
+pub use word::{NameList, Stop, Walk, Word, Worded};
 
 /// How much larger than needed a region or a bound becomes that is widened for a path.
 const MARGIN: f64 = 1.02;

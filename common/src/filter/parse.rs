@@ -1,28 +1,17 @@
 //! The grammar of filters: trees of what describes itself, names and texts in quotes.
 
-use std::ops::Range;
-
-use super::form::{Described, Form, NameList, NumberPart, Stop, Walk, Word};
-use super::reader::{Reader, in_word};
-use super::{LightPathExpression, Name, Tree, VertexTest};
+use super::condition::vertex::VertexTest;
+use super::condition::{Form, Leaves, NumberPart};
+use super::lpe;
+use super::reader::Reader;
+use super::word::{NameList, Stop, Walk, Word, in_word};
+use super::{LightPathExpression, Name, Tree};
 
 const NOT: Word = Word { text: "not", also: &["!"], meaning: "the opposite" };
 const AND: Word = Word { text: "and", also: &["&&", "&"], meaning: "both" };
 const OR: Word = Word { text: "or", also: &["||", "|"], meaning: "either" };
 const CLOSE: Word = Word::new(")", "closes");
 const COMMA: Word = Word::new(",", "and another one");
-
-/// What stands at the leaves of a tree that is read.
-pub(super) trait Leaves: Described + Sized {
-    /// Something to read each kind of leaf into, with an example of its text.
-    fn kinds() -> impl Iterator<Item = (Self, &'static str)>;
-
-    /// What a leaf is, where none of them begins as the text goes on; nothing where their first words
-    /// are told.
-    fn summary() -> Option<String> {
-        None
-    }
-}
 
 impl Reader<'_> {
     /// A tree: its loosest operator first.
@@ -101,66 +90,6 @@ impl Reader<'_> {
         }
         let quoted = self.quoted()?;
         if quoted.is_closed { Ok(Name { text: quoted.text, offset }) } else { self.unfinished() }
-    }
-
-    /// A text in double quotes, in which `\"` and `\\` stand for the second sign; the quote comes next.
-    fn quoted(&mut self) -> Result<Quoted, Stop> {
-        let quote = self.position();
-        self.letter();
-        let mut quoted = Quoted {
-            text: String::new(),
-            start: self.position(),
-            escapes: Vec::new(),
-            is_closed: false,
-        };
-        loop {
-            match self.letter() {
-                Some('"') => {
-                    quoted.is_closed = true;
-                    return Ok(quoted);
-                }
-                Some('\\') => {
-                    quoted.escapes.push(quoted.text.len());
-                    quoted.text.extend(self.letter());
-                }
-                Some(letter) => quoted.text.push(letter),
-                None if self.is_offering() => return Ok(quoted),
-                None => {
-                    let message = "this quote is never closed; put another `\"` at its end";
-                    return self.wrong(quote, message);
-                }
-            }
-        }
-    }
-
-    /// The text ends within quotes, where somebody wants to know what may come there.
-    fn unfinished<T>(&mut self) -> Result<T, Stop> {
-        self.wrong(self.position(), "this quote is not closed yet")
-    }
-}
-
-/// The content of quotes, and where in the text it stands.
-#[derive(Debug)]
-pub(super) struct Quoted {
-    pub(super) text: String,
-    /// Bytes of the outer text before the content.
-    start: usize,
-    /// Bytes of the content before each sign that has a `\` in front of it.
-    escapes: Vec<usize>,
-    /// The second quote is there, as it is unless somebody wants to know what may come before it.
-    is_closed: bool,
-}
-
-impl Quoted {
-    /// The place in the outer text of a place in the content.
-    pub(super) fn outer(&self, place: usize) -> usize {
-        let escapes = self.escapes.iter().filter(|escape| **escape < place).count();
-        self.start + place + escapes
-    }
-
-    /// The part of the outer text that a part of the content stands for.
-    pub(super) fn outer_range(&self, part: Range<usize>) -> Range<usize> {
-        self.outer(part.start)..self.outer(part.end)
     }
 }
 
@@ -244,7 +173,7 @@ impl Form for Reader<'_> {
         }
         let quoted = self.quoted()?;
         if !quoted.is_closed {
-            self.offer_in_expression(&quoted);
+            self.offer_within(&quoted, lpe::offers);
             return self.unfinished();
         }
         match LightPathExpression::parse(&quoted.text) {

@@ -2,8 +2,11 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::form::{Described, Form, NameList, NumberPart, Walk, Word};
-use super::{LightPathExpression, Name, Tree, VertexTest};
+use super::condition::vertex::{VertexCheck, VertexTest};
+use super::condition::{Described, Form, Leaf, NumberPart};
+use super::quote::InQuotes;
+use super::word::{NameList, Walk, Word};
+use super::{LightPathExpression, Name, Tree};
 
 impl<T: Described + Clone> Display for Tree<T> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
@@ -44,6 +47,18 @@ fn joined<T: Display>(
         grouped(f, part, is_grouped(part))?;
     }
     Ok(())
+}
+
+impl Display for Leaf {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(&text_of(self))
+    }
+}
+
+impl Display for VertexCheck {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(&text_of(self))
+    }
 }
 
 /// The text of something that describes itself.
@@ -106,7 +121,7 @@ impl Form for Printer {
     }
 
     fn expression(&mut self, expression: &mut LightPathExpression) -> Walk {
-        self.put(Quoted(expression.text()));
+        self.put(InQuotes(expression.text()));
         Ok(())
     }
 
@@ -141,28 +156,6 @@ impl Display for Exact {
 
 impl Display for Name {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        Quoted(&self.text).fmt(f)
+        InQuotes(&self.text).fmt(f)
     }
-}
-
-/// A text in double quotes.
-#[derive(Debug)]
-pub(super) struct Quoted<'a>(pub(super) &'a str);
-
-impl Display for Quoted<'_> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "\"{}\"", escaped(self.0, '"'))
-    }
-}
-
-/// A text that may stand within quotes of a kind.
-pub(super) fn escaped(text: &str, quote: char) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for sign in text.chars() {
-        if sign == quote || sign == '\\' {
-            escaped.push('\\');
-        }
-        escaped.push(sign);
-    }
-    escaped
 }

@@ -4,11 +4,12 @@
 //! place that it reached. From this come both the complaint about a text that is wrong there and, for
 //! a text that is still being written, what may be offered: neither can differ from what is read.
 
-use super::complete::{Offers, may_follow};
+use super::FilterScene;
 use super::error::{FilterError, closest};
-use super::form::{NameList, Stop, Walk, Word};
-use super::parse::Quoted;
+use super::offers::{Offers, Within, may_follow};
+use super::quote::Quoted;
 use super::tree::{MAX_DEPTH, too_deep};
+use super::word::{NameList, Stop, Walk, Word, in_word};
 
 /// A text that is read.
 #[derive(Debug)]
@@ -198,6 +199,41 @@ impl<'a> Reader<'a> {
         !(text.ends_with(in_word) && after.starts_with(in_word) && !self.is_expression)
     }
 
+    /// A text in double quotes, in which `\"` and `\\` stand for the second sign; the quote comes next.
+    pub(super) fn quoted(&mut self) -> Result<Quoted, Stop> {
+        let quote = self.position();
+        self.letter();
+        let mut quoted = Quoted {
+            text: String::new(),
+            start: self.position(),
+            escapes: Vec::new(),
+            is_closed: false,
+        };
+        loop {
+            match self.letter() {
+                Some('"') => {
+                    quoted.is_closed = true;
+                    return Ok(quoted);
+                }
+                Some('\\') => {
+                    quoted.escapes.push(quoted.text.len());
+                    quoted.text.extend(self.letter());
+                }
+                Some(letter) => quoted.text.push(letter),
+                None if self.is_offering() => return Ok(quoted),
+                None => {
+                    let message = "this quote is never closed; put another `\"` at its end";
+                    return self.wrong(quote, message);
+                }
+            }
+        }
+    }
+
+    /// The text ends within quotes, where somebody wants to know what may come there.
+    pub(super) fn unfinished<T>(&mut self) -> Result<T, Stop> {
+        self.wrong(self.position(), "this quote is not closed yet")
+    }
+
     /// Skips blanks and reads `text` where it comes next.
     pub(super) fn accept(&mut self, text: &str) -> bool {
         self.skip_blanks();
@@ -250,10 +286,15 @@ impl<'a> Reader<'a> {
         self.with_offers("\"", |offers, place| offers.names(place, list, write));
     }
 
-    /// Offers what may come within the quotes of an expression, whose text ends there.
-    pub(super) fn offer_in_expression(&mut self, quoted: &Quoted) {
-        if let Some(offers) = &mut self.offers {
-            offers.expression(quoted);
+    /// Offers what may come within quotes in which the text ends, as `offers` collects it.
+    pub(super) fn offer_within(
+        &mut self,
+        quoted: &Quoted,
+        offers: impl Fn(&str, &FilterScene) -> Within,
+    ) {
+        if let Some(outer) = &mut self.offers {
+            let within = offers(&quoted.text, outer.scene());
+            outer.within(quoted, within);
         }
     }
 
@@ -290,11 +331,6 @@ impl<'a> Reader<'a> {
         self.depth -= 1;
         Ok(found)
     }
-}
-
-/// True for what words consist of.
-pub(super) fn in_word(c: char) -> bool {
-    c.is_alphanumeric() || c == '_'
 }
 
 /// The word, number or sign that `text` begins with; a long one is cut.

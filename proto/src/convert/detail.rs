@@ -82,11 +82,11 @@ impl TryFrom<v1::VertexDetail> for VertexDetail {
 
 #[cfg(test)]
 mod tests {
-    use common::{ChainId, Notice, Rgb};
+    use common::{ChainId, Notice, Rgb, TracerEvent};
     use prost::Message as _;
 
     use super::*;
-    use crate::{TracerEvent, ViewerEvent};
+    use crate::ViewerEvent;
 
     fn reply() -> DetailReply {
         let vertex = |j: f64| VertexDetail {

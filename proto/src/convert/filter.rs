@@ -1,7 +1,8 @@
 //! Filters, which travel as text, and what is said of them.
 
 use common::{
-    FilterCounts, FilterError, FilterReply, MAX_FILTER_BYTES, MAX_LEAVES, NearestMiss, Shortfall,
+    FilterCounts, FilterError, FilterReply, FilterText, MAX_FILTER_BYTES, MAX_LEAVES, NearestMiss,
+    Shortfall,
 };
 
 use super::{WireError, check};
@@ -10,18 +11,18 @@ use crate::v1;
 /// A filter as it is printed may be longer than its author wrote it.
 const MAX_PRINTED: usize = 4 * MAX_FILTER_BYTES;
 
-/// A filter that a viewer asks for. Whether its text makes sense is for the tracer to find out.
+/// A filter that a viewer asks for. What is wrong with it is for the tracer to say.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WantedFilter {
     /// The viewer's number for it, at least 1.
     pub revision: u32,
-    /// Its text; blank for every path.
-    pub text: String,
+    /// What it wants; blank for every path.
+    pub filter: FilterText,
 }
 
 impl From<WantedFilter> for v1::SetFilter {
-    fn from(WantedFilter { revision, text }: WantedFilter) -> Self {
-        Self { revision, text }
+    fn from(WantedFilter { revision, filter }: WantedFilter) -> Self {
+        Self { revision, text: filter.to_string() }
     }
 }
 
@@ -30,7 +31,8 @@ impl TryFrom<v1::SetFilter> for WantedFilter {
 
     fn try_from(wire: v1::SetFilter) -> Result<Self, WireError> {
         let revision = check::within("set_filter.revision", wire.revision, 1, u32::MAX)?;
-        Ok(Self { revision, text: check::text("set_filter.text", wire.text, MAX_FILTER_BYTES)? })
+        let text = check::text("set_filter.text", wire.text, MAX_FILTER_BYTES)?;
+        Ok(Self { revision, filter: FilterText::read(text) })
     }
 }
 

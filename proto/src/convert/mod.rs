@@ -13,6 +13,7 @@ mod film;
 mod filter;
 mod focus;
 mod path;
+mod role;
 mod scene;
 mod session;
 mod statistics;
@@ -26,7 +27,7 @@ mod tests;
 pub use error::WireError;
 pub use filter::WantedFilter;
 pub use scene::{ReceivedScene, SceneAssembler, scene_chunks, unchanged_scene};
-pub use session::{Hello, TracerEvent, ViewerEvent};
+pub use session::{Hello, ViewerEvent};
 pub use steering::NumberedOrder;
 
 /// No message of the protocol is larger: what a receiver should set its decoding limit to.

@@ -1,11 +1,11 @@
 //! The two directions of a session.
 
-use common::{
-    Appearance, FilmTile, FilterReply, FocusPath, FocusStep, Gap, Notice, PathBatch, PathId, Role,
-    Statistics, Welcome,
-};
+use std::sync::Arc;
+
+use common::{Appearance, Gap, Notice, PathId, Role, TracerEvent, Welcome};
 
 use super::filter::WantedFilter;
+use super::role::role;
 use super::steering::NumberedOrder;
 use super::{WireError, check};
 use crate::{ProtocolVersion, v1};
@@ -47,39 +47,6 @@ pub enum ViewerEvent {
     /// Asks for the numbers behind a path.
     Inspect(PathId),
     /// Leaves, with a reason.
-    Goodbye(String),
-    /// Something of a later version, to be ignored.
-    Unknown,
-}
-
-/// What the tracer says.
-#[derive(Clone, Debug, PartialEq)]
-pub enum TracerEvent {
-    /// Answers the hello.
-    Welcome(Welcome),
-    /// Paths.
-    Paths(PathBatch),
-    /// Rows of the progressive image.
-    Film(FilmTile),
-    /// Counts and rates.
-    Statistics(Statistics),
-    /// Data that was dropped.
-    Gap(Gap),
-    /// The snapshot after the welcome is complete.
-    SnapshotEnd,
-    /// Answers a filter.
-    FilterReply(FilterReply),
-    /// The explorer's current path.
-    FocusPath(FocusPath),
-    /// A step of the explorer.
-    FocusStep(FocusStep),
-    /// So many steps of the explorer are missing here.
-    FocusGap(u64),
-    /// Rows of the explorer's film.
-    ExplorerFilm(FilmTile),
-    /// Who steers, and what.
-    Notice(Notice),
-    /// The tracer ends the session, with a reason.
     Goodbye(String),
     /// Something of a later version, to be ignored.
     Unknown,
@@ -132,15 +99,15 @@ impl From<&TracerEvent> for v1::TracerMessage {
     fn from(event: &TracerEvent) -> Self {
         use v1::tracer_message::Kind;
         let kind = match event {
-            TracerEvent::Welcome(welcome) => Some(Kind::Welcome(welcome.into())),
-            TracerEvent::Paths(batch) => Some(Kind::PathBatch(batch.into())),
+            TracerEvent::Welcome(welcome) => Some(Kind::Welcome((&**welcome).into())),
+            TracerEvent::Paths(batch) => Some(Kind::PathBatch((&**batch).into())),
             TracerEvent::Film(tile) => Some(Kind::FilmTile(tile.into())),
-            TracerEvent::Statistics(statistics) => Some(Kind::Statistics(statistics.into())),
+            TracerEvent::Statistics(statistics) => Some(Kind::Statistics((&**statistics).into())),
             TracerEvent::Gap(gap) => Some(Kind::Gap((*gap).into())),
             TracerEvent::SnapshotEnd => Some(Kind::SnapshotEnd(v1::SnapshotEnd {})),
             TracerEvent::FilterReply(reply) => Some(Kind::FilterReply(reply.into())),
-            TracerEvent::FocusPath(path) => Some(Kind::FocusPath(path.into())),
-            TracerEvent::FocusStep(step) => Some(Kind::FocusStep(step.into())),
+            TracerEvent::FocusPath(path) => Some(Kind::FocusPath((&**path).into())),
+            TracerEvent::FocusStep(step) => Some(Kind::FocusStep((&**step).into())),
             TracerEvent::FocusGap(steps) => Some(Kind::FocusGap(v1::FocusGap { steps: *steps })),
             TracerEvent::ExplorerFilm(tile) => Some(Kind::ExplorerFilm(tile.into())),
             TracerEvent::Notice(notice) => Some(notice.into()),
@@ -172,15 +139,17 @@ impl TryFrom<v1::TracerMessage> for TracerEvent {
     fn try_from(wire: v1::TracerMessage) -> Result<Self, WireError> {
         use v1::tracer_message::Kind;
         Ok(match wire.kind {
-            Some(Kind::Welcome(welcome)) => Self::Welcome(welcome.try_into()?),
-            Some(Kind::PathBatch(batch)) => Self::Paths(batch.try_into()?),
+            Some(Kind::Welcome(welcome)) => Self::Welcome(Box::new(welcome.try_into()?)),
+            Some(Kind::PathBatch(batch)) => Self::Paths(Arc::new(batch.try_into()?)),
             Some(Kind::FilmTile(tile)) => Self::Film(tile.try_into()?),
-            Some(Kind::Statistics(statistics)) => Self::Statistics(statistics.try_into()?),
+            Some(Kind::Statistics(statistics)) => {
+                Self::Statistics(Arc::new(statistics.try_into()?))
+            }
             Some(Kind::Gap(gap)) => Self::Gap(gap.into()),
             Some(Kind::SnapshotEnd(_)) => Self::SnapshotEnd,
             Some(Kind::FilterReply(reply)) => Self::FilterReply(reply.try_into()?),
-            Some(Kind::FocusPath(path)) => Self::FocusPath(path.try_into()?),
-            Some(Kind::FocusStep(step)) => Self::FocusStep(step.try_into()?),
+            Some(Kind::FocusPath(path)) => Self::FocusPath(Arc::new(path.try_into()?)),
+            Some(Kind::FocusStep(step)) => Self::FocusStep(Arc::new(step.try_into()?)),
             Some(Kind::FocusGap(gap)) => Self::FocusGap(gap.steps),
             Some(Kind::ExplorerFilm(tile)) => Self::ExplorerFilm(tile.try_into()?),
             Some(Kind::Presence(presence)) => Self::Notice(Notice::Presence(presence.try_into()?)),
@@ -212,23 +181,6 @@ fn compatible(wire: Option<v1::ProtocolVersion>) -> Result<ProtocolVersion, Wire
     let v1::ProtocolVersion { major, minor } = check::required("version", wire)?;
     let (ours, theirs) = (ProtocolVersion::CURRENT, ProtocolVersion { major, minor });
     if theirs.major == ours.major { Ok(theirs) } else { Err(WireError::Version { ours, theirs }) }
-}
-
-impl From<Role> for v1::Role {
-    fn from(role: Role) -> Self {
-        match role {
-            Role::Observer => Self::Observer,
-            Role::Driver => Self::Driver,
-        }
-    }
-}
-
-/// A role; one of a later version may at least observe.
-pub(super) fn role(code: i32) -> Role {
-    match v1::Role::try_from(code) {
-        Ok(v1::Role::Driver) => Role::Driver,
-        Ok(v1::Role::Observer | v1::Role::Unspecified) | Err(_) => Role::Observer,
-    }
 }
 
 impl From<Hello> for v1::Hello {

@@ -8,7 +8,7 @@ use common::{
 };
 
 use super::focus::{from_point, to_point};
-use super::session::role;
+use super::role::role;
 use super::{WireError, check};
 use crate::v1;
 use crate::v1::order::What;
@@ -79,7 +79,9 @@ impl TryFrom<v1::Order> for NumberedOrder {
     }
 }
 
+/// Every order is named: a new one is understood before anything is made of it.
 fn order(wire: What) -> Result<Order, WireError> {
+    let explorer = Order::Explorer;
     Ok(match wire {
         What::LeaseAsk(_) => Order::Lease(LeaseRequest::Ask),
         What::LeaseRelease(_) => Order::Lease(LeaseRequest::Release),
@@ -97,31 +99,27 @@ fn order(wire: What) -> Result<Order, WireError> {
             Order::Chains(ChainCommand::SetPrecision(precision))
         }
         What::ExplorerSeed(v1::ExplorerSeed { path }) => {
-            let seed = path.map_or(Seed::Newest, |id| Seed::Path(id.into()));
-            Order::Explorer(ExplorerCommand::Seed(seed))
+            explorer(ExplorerCommand::Seed(path.map_or(Seed::Newest, |id| Seed::Path(id.into()))))
         }
-        What::ExplorerPause(_) => Order::Explorer(ExplorerCommand::Pause),
         What::ExplorerPlay(rate) => {
             let (least, most) = (MIN_RATE.into(), MAX_RATE.into());
             check::between("order.explorer_play", rate.into(), least, most)?;
-            Order::Explorer(ExplorerCommand::Play(rate))
+            explorer(ExplorerCommand::Play(rate))
         }
+        What::ExplorerPause(_) => explorer(ExplorerCommand::Pause),
         What::ExplorerStep(count) => {
             let count = check::within("order.explorer_step", count, 1, MAX_STEPS)?;
-            Order::Explorer(ExplorerCommand::Step(count))
+            explorer(ExplorerCommand::Step(count))
         }
-        What::ExplorerSkipToAcceptance(_) => {
-            Order::Explorer(ExplorerCommand::Skip(SkipTo::Acceptance))
-        }
+        What::ExplorerSkipToAcceptance(_) => explorer(ExplorerCommand::Skip(SkipTo::Acceptance)),
         What::ExplorerSkipToStrategy(strategy) => {
-            let strategy = strategy_id(strategy)?;
-            Order::Explorer(ExplorerCommand::Skip(SkipTo::Strategy(strategy)))
+            explorer(ExplorerCommand::Skip(SkipTo::Strategy(strategy_id(strategy)?)))
         }
-        What::ExplorerAllow(bits) => Order::Explorer(ExplorerCommand::Allow(StrategySet(bits))),
-        What::ExplorerFan(v1::ExplorerFan { strategy, count }) => {
-            let count = check::within("order.explorer_fan", count, 1, MAX_FAN)?;
-            Order::Explorer(ExplorerCommand::Fan { strategy: strategy_id(strategy)?, count })
-        }
+        What::ExplorerAllow(bits) => explorer(ExplorerCommand::Allow(StrategySet(bits))),
+        What::ExplorerFan(v1::ExplorerFan { strategy, count }) => explorer(ExplorerCommand::Fan {
+            strategy: strategy_id(strategy)?,
+            count: check::within("order.explorer_fan", count, 1, MAX_FAN)?,
+        }),
     })
 }
 
@@ -281,7 +279,7 @@ impl TryFrom<v1::ExplorerState> for ExplorerState {
             pace: match Wire::try_from(wire.pace) {
                 Ok(Wire::Playing) => Pace::Playing,
                 Ok(Wire::Skipping) => Pace::Skipping,
-                // A pace of a later version is none that this one could show.
+                // A pace of a later version is none of those in which steps come.
                 Ok(Wire::Paused | Wire::Unspecified) | Err(_) => Pace::Paused,
             },
             rate: wire.rate,

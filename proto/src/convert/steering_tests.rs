@@ -1,10 +1,12 @@
 //! Round trips of orders, notices and the focus lane, and what hostile peers may send instead.
 
+use std::sync::Arc;
+
 use common::{
     Appearance, Attendee, Author, ChainCommand, ChainId, ChainState, Event, ExplorerCommand,
     ExplorerState, FocusOutcome, FocusPath, FocusStep, Gaze, LeaseEvent, LeaseNotice, LeaseRequest,
     Notice, Order, OrderReply, Pace, PathHeader, PathId, Presence, RatioFactors, Role, Seed,
-    SkipTo, StrategyId, StrategySet, VertexKind, VertexRecord,
+    SkipTo, StrategyId, StrategySet, TracerEvent, VertexKind, VertexRecord,
 };
 use proptest::prelude::*;
 use prost::Message as _;
@@ -74,10 +76,10 @@ fn the_focus_lane_survives_the_wire() {
     let path = FocusPath { header, vertices: vertices(5), next: 100 };
     let complete = FocusStep { outcome: FocusOutcome::Accepted, blocker: None, ..step() };
     for event in [
-        TracerEvent::FocusPath(path),
-        TracerEvent::FocusStep(step()),
-        TracerEvent::FocusStep(FocusStep { eye_side: Vec::new(), ..complete.clone() }),
-        TracerEvent::FocusStep(FocusStep { outcome: FocusOutcome::Rejected, ..complete }),
+        TracerEvent::FocusPath(Arc::new(path)),
+        TracerEvent::FocusStep(Arc::new(step())),
+        TracerEvent::FocusStep(Arc::new(FocusStep { eye_side: Vec::new(), ..complete.clone() })),
+        TracerEvent::FocusStep(Arc::new(FocusStep { outcome: FocusOutcome::Rejected, ..complete })),
         TracerEvent::FocusGap(7),
     ] {
         assert_eq!(travel(&event), Ok(event));
@@ -236,8 +238,8 @@ proptest! {
         let state = ExplorerState { by: Some(author()), current: Some(id()), ..ExplorerState::default() };
         let chains = ChainState { weights: vec![1.0; 7], by: Some(author()), ..ChainState::default() };
         let event = match which {
-            0 => TracerEvent::FocusStep(step()),
-            1 => TracerEvent::FocusPath(FocusPath { vertices: vertices(4), ..FocusPath::default() }),
+            0 => TracerEvent::FocusStep(Arc::new(step())),
+            1 => TracerEvent::FocusPath(Arc::new(FocusPath { vertices: vertices(4), ..FocusPath::default() })),
             2 => TracerEvent::Notice(Notice::Explorer(state)),
             _ => TracerEvent::Notice(Notice::Chains(chains)),
         };

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use common::{
     BatchBuilder, BatchOrigin, Camera, CameraPose, ChainId, ChainTotals, Diagnostics, Event,
-    FailureCount, FilmTile, FilterCounts, FilterError, FilterObject, FilterReply, Gap,
+    FailureCount, FilmTile, FilterCounts, FilterError, FilterObject, FilterReply, FilterText, Gap,
     MAX_FILTER_BYTES, MaterialInfo, NearestMiss, PathBatch, PathHeader, PathId, Queue, Rgb, Role,
     SceneFrame, SceneMesh, Shortfall, Statistics, StrategyId, StrategyStatistics, TexturePreview,
-    TileGrid, TileMaps, UNKNOWN, VertexKind, VertexRecord, Welcome,
+    TileGrid, TileMaps, TracerEvent, UNKNOWN, VertexKind, VertexRecord, Welcome,
 };
 use glam::DVec3;
 use proptest::prelude::*;
@@ -213,7 +213,7 @@ fn any_batch() -> impl Strategy<Value = PathBatch> {
 proptest! {
     #[test]
     fn any_batch_survives_the_wire(batch in any_batch()) {
-        let sent = TracerEvent::Paths(batch);
+        let sent = TracerEvent::Paths(Arc::new(batch));
         prop_assert_eq!(travel(&sent), Ok(sent));
     }
 
@@ -233,7 +233,7 @@ proptest! {
         batch in any_batch(),
         damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8),
     ) {
-        let mut bytes = v1::TracerMessage::from(&TracerEvent::Paths(batch)).encode_to_vec();
+        let mut bytes = v1::TracerMessage::from(&TracerEvent::Paths(Arc::new(batch))).encode_to_vec();
         for (place, value) in damage {
             let place = place.index(bytes.len());
             bytes[place] = value;
@@ -251,9 +251,9 @@ proptest! {
 #[test]
 fn every_tracer_event_survives_the_wire() {
     for event in [
-        TracerEvent::Welcome(welcome()),
+        TracerEvent::Welcome(Box::new(welcome())),
         TracerEvent::Film(tile()),
-        TracerEvent::Statistics(statistics()),
+        TracerEvent::Statistics(Arc::new(statistics())),
         TracerEvent::Gap(Gap { batches: 1, paths: 2, bytes: 3 }),
         TracerEvent::SnapshotEnd,
         TracerEvent::FilterReply(FilterReply {
@@ -282,14 +282,14 @@ fn every_viewer_event_survives_the_wire() {
         viewer_name: "a viewer".to_owned(),
         wanted_role: Role::Driver,
         data_budget: 1 << 20,
-        filter: Some(WantedFilter { revision: 1, text: "edges > 1".to_owned() }),
+        filter: Some(WantedFilter { revision: 1, filter: FilterText::read("edges > 1") }),
         focus: true,
         resume: "0a1b".to_owned(),
     };
     for event in [
         ViewerEvent::Hello(hello),
         ViewerEvent::SetBudget(9),
-        ViewerEvent::SetFilter(WantedFilter { revision: u32::MAX, text: String::new() }),
+        ViewerEvent::SetFilter(WantedFilter { revision: u32::MAX, filter: FilterText::default() }),
         ViewerEvent::Goodbye("over".to_owned()),
         ViewerEvent::Unknown,
     ] {

@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use common::{Filter, FocusPath, SceneMesh};
+use common::{Filter, FocusPath, SceneMesh, TracerEvent};
 use prost::Message as _;
-use proto::{SceneAssembler, TracerEvent, ViewerEvent, scene_chunks, v1};
+use proto::{SceneAssembler, ViewerEvent, scene_chunks, v1};
 use tracer_server::scene::Scene;
 use tracer_server::scene::builtin::BUILTINS;
 use tracer_server::scene::load::load;
 use viewer_client::app::share;
-use viewer_client::command::Command;
+use viewer_client::command::{Command, Form, forms};
 use viewer_client::source::dump::{self, Stage};
 
 use super::campaign::{Answer, Target};
@@ -438,26 +438,16 @@ fn any_file_of_paths_is_answered() {
 
 #[test]
 fn any_command_is_answered() {
-    let forms: Vec<&str> = viewer_client::command::forms().map(|(form, _)| form).collect();
+    let texts: Vec<String> = forms().map(Form::text).collect();
     let words: Vec<&str> =
-        forms.iter().flat_map(|form| form.split(' ')).chain([" ", "~"]).collect();
-    let seeds = bytes([
-        "quit",
-        "undo",
-        "filter set any is specular",
-        "camera frame",
-        "explorer step 3",
-        "explorer play 12.5",
-        "cloud width 2",
-        "explorer seed 0.1.2",
-        "image exposure 1.5",
-    ]);
+        texts.iter().flat_map(|form| form.split(' ')).chain([" ", "~"]).collect();
+    let examples = forms().flat_map(|form| (form.examples)());
+    let seeds = bytes(examples.map(|command| command.to_string()));
     let target = Target { name: "command", seeds, mutator: Mutator::Text(&words), count: 20_000 };
     target.run(|bytes| {
         let text = String::from_utf8_lossy(bytes);
-        let command: Command = text
-            .parse()
-            .map_err(|error: viewer_client::command::CommandError| error.to_string())?;
+        let command: Command =
+            text.parse().map_err(|error: viewer_client::value::CommandError| error.to_string())?;
         let printed = command.to_string();
         let again: Result<Command, _> = printed.parse();
         assert_eq!(again.as_ref(), Ok(&command), "`{printed}` means something else");

@@ -3,13 +3,13 @@
 use common::{
     Appearance, Attendee, Author, ChainCommand, ChainId, ChainState, Event, ExplorerCommand,
     ExplorerState, FailureCount, FilmTile, FilterCounts, FilterError, FilterMaterial, FilterObject,
-    FilterReply, FilterScene, FocusOutcome, FocusPath, FocusStep, Gap, Gaze, LeaseEvent,
-    LeaseNotice, LeaseRequest, Notice, Order, OrderReply, PathHeader, PathId, Presence, Role,
-    SceneFrame, Seed, SkipTo, Statistics, StrategyId, StrategySet, StrategyStatistics, VertexKind,
-    VertexRecord,
+    FilterReply, FilterScene, FilterText, FocusOutcome, FocusPath, FocusStep, Gap, Gaze,
+    LeaseEvent, LeaseNotice, LeaseRequest, Notice, Order, OrderReply, PathHeader, PathId, Presence,
+    Role, SceneFrame, Seed, SkipTo, Statistics, StrategyId, StrategySet, StrategyStatistics,
+    TracerEvent, VertexKind, VertexRecord,
 };
 use glam::DVec3;
-use proto::{Hello, NumberedOrder, ProtocolVersion, TracerEvent, ViewerEvent, WantedFilter};
+use proto::{Hello, NumberedOrder, ProtocolVersion, ViewerEvent, WantedFilter};
 
 use crate::stream::fixture::{batch, path, session_info};
 
@@ -23,7 +23,7 @@ fn id() -> PathId {
 
 /// A message of every kind that viewers send.
 pub(super) fn viewer_events() -> Vec<ViewerEvent> {
-    let filter = WantedFilter { revision: 4, text: "edges > 2".to_owned() };
+    let filter = WantedFilter { revision: 4, filter: FilterText::read("edges > 2") };
     let hello = Hello {
         version: ProtocolVersion::CURRENT,
         viewer_name: "anna".to_owned(),
@@ -99,15 +99,15 @@ pub(super) fn tracer_events() -> Vec<TracerEvent> {
         ..FocusStep::default()
     };
     [
-        TracerEvent::Welcome(session_info().welcome),
-        TracerEvent::Paths(batch(1500).0),
+        TracerEvent::Welcome(Box::new(session_info().welcome)),
+        TracerEvent::Paths(batch(1500).0.into()),
         TracerEvent::Film(tile.clone()),
         TracerEvent::ExplorerFilm(tile),
-        TracerEvent::Statistics(statistics()),
+        TracerEvent::Statistics(statistics().into()),
         TracerEvent::Gap(Gap { batches: 1, paths: 2, bytes: 3 }),
         TracerEvent::FilterReply(reply),
-        TracerEvent::FocusPath(FocusPath { header, vertices: path(3, 5), next: 9 }),
-        TracerEvent::FocusStep(step),
+        TracerEvent::FocusPath(FocusPath { header, vertices: path(3, 5), next: 9 }.into()),
+        TracerEvent::FocusStep(step.into()),
         TracerEvent::FocusGap(7),
         TracerEvent::Goodbye("over".to_owned()),
     ]

@@ -5,12 +5,12 @@ use std::time::Duration;
 
 use common::{
     BatchBuilder, Camera, CameraPose, ChainId, Event, MaterialInfo, PathBatch, PathHeader, PathId,
-    Rgb, Role, SceneFrame, SceneMesh, VertexKind, VertexRecord, Welcome,
+    Rgb, Role, SceneFrame, SceneMesh, TracerEvent, VertexKind, VertexRecord, Welcome,
 };
 use glam::DVec3;
 use proto::v1::tracer_client::TracerClient;
 use proto::v1::viewer_message::Kind;
-use proto::{Hello, ProtocolVersion, TracerEvent, v1};
+use proto::{Hello, ProtocolVersion, v1};
 use tonic::transport::{Channel, Endpoint};
 use tonic::{Status, Streaming};
 use tracer_server::hub::HubLimits;
@@ -139,7 +139,7 @@ impl Viewer {
         let mut stream = watch(server, vec![message]).await?;
         let first = soon("a welcome", stream.message()).await?.expect("the stream is open");
         match TracerEvent::try_from(first).expect("well-formed") {
-            TracerEvent::Welcome(welcome) => Ok(Self { welcome, stream }),
+            TracerEvent::Welcome(welcome) => Ok(Self { welcome: *welcome, stream }),
             other => panic!("not a welcome: {other:?}"),
         }
     }

@@ -7,10 +7,10 @@ use std::net::TcpStream;
 use std::sync::Arc;
 use std::time::Duration;
 
-use common::{FilmFrame, Gap, Rgb, Statistics, Welcome};
+use common::{FilmFrame, Gap, Rgb, Statistics, TracerEvent, Welcome};
 use proto::v1::tracer_client::TracerClient;
 use proto::v1::viewer_message::Kind;
-use proto::{ProtocolVersion, SceneAssembler, TracerEvent, ViewerEvent, v1};
+use proto::{ProtocolVersion, SceneAssembler, ViewerEvent, v1};
 use tokio::sync::mpsc;
 use tokio_stream::wrappers::ReceiverStream;
 use tonic::transport::{Channel, Endpoint};

@@ -20,7 +20,7 @@ use super::chains::ChainArgs;
 use super::input::{self, FilmSize};
 use super::integrator::IntegratorName;
 use super::meter::Meter;
-use super::render::{DialArgs, PrimaryArgs, check_reference, seconds};
+use super::render::{DialArgs, PrimaryArgs, check_reference, missing, seconds};
 use crate::chain::EnsembleSettings;
 use crate::image_file;
 use crate::integrator::pssmlt::PrimarySettings;
@@ -197,6 +197,12 @@ impl TradeArgs {
         if let Some(file) = &self.reference {
             let image = image_file::read_exr(file)?;
             check_reference(&image, scene)?;
+            let missing = missing(&image);
+            if missing > 0 {
+                tracing::warn!(
+                    "the reference has no value for {missing} pixels, which are left out"
+                );
+            }
             return Ok(Reference { image, error: None });
         }
         let settings = RenderSettings {

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use common::{FocusPath, FocusStep};
+use common::{FocusPath, FocusStep, TracerEvent};
 
 /// Most bytes of steps that wait for a viewer: some five thousand of them.
 pub(super) const FOCUS_BYTES: usize = 2 << 20;
@@ -27,38 +27,11 @@ impl FocusNews {
     }
 }
 
-/// What waits in the lane.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum FocusItem {
-    Path(Arc<FocusPath>),
-    Step(Arc<FocusStep>),
-    Gap(u64),
-}
-
-impl FocusItem {
-    pub(super) fn byte_len(&self) -> usize {
-        match self {
-            Self::Path(path) => path.byte_len(),
-            Self::Step(step) => step.byte_len(),
-            Self::Gap(_) => size_of::<Self>(),
-        }
-    }
-
-    /// Steps that are gone when it is dropped.
-    fn steps(&self) -> u64 {
-        match self {
-            Self::Path(_) => 0,
-            Self::Step(_) => 1,
-            Self::Gap(steps) => *steps,
-        }
-    }
-}
-
 /// The lane. Nothing is in it before a viewer has asked for it.
 #[derive(Debug, Default)]
 pub(super) struct FocusQueue {
     on: bool,
-    items: VecDeque<FocusItem>,
+    items: VecDeque<TracerEvent>,
     bytes: usize,
 }
 
@@ -73,7 +46,7 @@ impl FocusQueue {
         if on != self.on {
             *self = Self { on, ..Self::default() };
             if let Some(path) = current.filter(|_| on) {
-                self.put(FocusItem::Path(path));
+                self.put(TracerEvent::FocusPath(path));
             }
         }
     }
@@ -85,21 +58,21 @@ impl FocusQueue {
             return;
         }
         let item = match &news.step {
-            Some(step) => FocusItem::Step(Arc::clone(step)),
-            None => FocusItem::Path(Arc::clone(&news.after)),
+            Some(step) => TracerEvent::FocusStep(Arc::clone(step)),
+            None => TracerEvent::FocusPath(Arc::clone(&news.after)),
         };
         self.put(item);
         if self.bytes > FOCUS_BYTES {
-            let lost = self.items.iter().map(FocusItem::steps).sum();
+            let lost = self.items.iter().map(TracerEvent::focus_steps).sum();
             self.items.clear();
             self.bytes = 0;
-            self.put(FocusItem::Gap(lost));
-            self.put(FocusItem::Path(Arc::clone(&news.after)));
+            self.put(TracerEvent::FocusGap(lost));
+            self.put(TracerEvent::FocusPath(Arc::clone(&news.after)));
         }
     }
 
     /// Takes what comes first.
-    pub(super) fn pop(&mut self) -> Option<FocusItem> {
+    pub(super) fn pop(&mut self) -> Option<TracerEvent> {
         let item = self.items.pop_front()?;
         self.bytes -= item.byte_len();
         Some(item)
@@ -110,7 +83,7 @@ impl FocusQueue {
         self.bytes
     }
 
-    fn put(&mut self, item: FocusItem) {
+    fn put(&mut self, item: TracerEvent) {
         self.bytes += item.byte_len();
         self.items.push_back(item);
     }

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use common::{
-    FilmTile, FilterReply, FocusPath, FocusStep, Gap, Notice, PathBatch, Queue, Statistics,
+    CompiledFilter, FilterReply, FocusPath, Gap, Notice, PathBatch, Queue, Statistics, TracerEvent,
 };
 use tokio::sync::Notify;
 use tokio::sync::futures::Notified;
@@ -12,10 +12,10 @@ use tokio_util::sync::CancellationToken;
 
 use super::backlog::Backlog;
 use super::budget::Budget;
-use super::control::{Control, ControlQueue};
+use super::control::ControlQueue;
 use super::film_queue::{FilmQueue, TileOrder};
-use super::focus::{FOCUS_BYTES, FocusItem, FocusNews, FocusQueue};
-use super::population::Offer;
+use super::focus::{FOCUS_BYTES, FocusNews, FocusQueue};
+use super::population::Population;
 use super::{HubLimits, NumberedFilm};
 
 /// The data lane holds what the budget sends in this many seconds, so that a slow viewer sees the
@@ -24,51 +24,17 @@ const LANE_SECONDS: f64 = 0.5;
 /// The data lane holds at least this many bytes, several batches.
 const MIN_LANE_BYTES: usize = 256 << 10;
 
-/// What goes to a viewer.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Delivery {
-    /// Counts and rates, with this viewer's own.
-    Statistics(Statistics),
-    /// Rows of the film.
-    Film(FilmTile),
-    /// The snapshot is complete.
-    SnapshotEnd,
-    /// The answer to a filter.
-    FilterReply(FilterReply),
-    /// Who steers, and what.
-    Notice(Notice),
-    /// The explorer's current path.
-    FocusPath(Arc<FocusPath>),
-    /// A step of the explorer.
-    FocusStep(Arc<FocusStep>),
-    /// So many steps of the explorer are missing here.
-    FocusGap(u64),
-    /// Rows of the explorer's film.
-    ExplorerFilm(FilmTile),
-    /// A batch, perhaps shared with other viewers.
-    Paths(Arc<PathBatch>),
-    /// What was dropped since the last gap.
-    Gap(Gap),
-    /// The viewer must be disconnected, for the reason given.
-    Closed(String),
-}
-
-/// What [`Lane::take`] found.
+/// What a look into the lanes has found.
 #[derive(Debug)]
-pub(super) enum Taken {
+pub(super) enum Next {
     /// Something to send.
-    Now(Delivery),
-    /// Statistics to send, still without what concerns this viewer's paths.
-    Statistics(Statistics),
-    /// The gap that was offered is to be sent.
-    Gap,
-    /// The batch that was offered is to be sent.
-    Paths,
+    Send(TracerEvent),
     /// Rows to send, still to be converted: not under the lane's lock.
     Film(TileOrder),
     /// Rows of the explorer's film to send, still to be converted.
     ExplorerFilm(TileOrder),
-    /// Nothing until the lane is filled, or until the instant when the budget allows more.
+    /// Nothing until the lane is filled, or until the instant when the budget or the open batch allows
+    /// more.
     Later(Option<Instant>),
 }
 
@@ -78,6 +44,8 @@ pub(super) struct Lane {
     session: u64,
     limits: HubLimits,
     state: Mutex<LaneState>,
+    /// Touched by the viewer's own task only; locked before the state.
+    population: Mutex<Population>,
     wake: Notify,
     /// Cancelled when the lanes are closed.
     ended: CancellationToken,
@@ -127,8 +95,14 @@ impl Lane {
             explorer_film: FilmQueue::default(),
             film_was_last: false,
         };
-        let ended = CancellationToken::new();
-        Self { session, limits, state: Mutex::new(state), wake: Notify::new(), ended }
+        Self {
+            session,
+            limits,
+            state: Mutex::new(state),
+            population: Mutex::new(Population::new(session)),
+            wake: Notify::new(),
+            ended: CancellationToken::new(),
+        }
     }
 
     /// The viewer's number.
@@ -149,9 +123,9 @@ impl Lane {
         film: Option<NumberedFilm>,
     ) {
         let mut state = self.state();
-        let statistics = statistics.map(Control::Statistics);
-        for control in notices.map(Control::Notice).chain(statistics) {
-            state.push_control(control, self.limits);
+        let statistics = statistics.map(TracerEvent::Statistics);
+        for event in notices.map(TracerEvent::Notice).chain(statistics) {
+            state.push_control(event, self.limits);
         }
         state.phase = if film.is_some() { Phase::SnapshotFilm } else { Phase::SnapshotEnd };
         if let Some(film) = film {
@@ -171,7 +145,7 @@ impl Lane {
         let mut state = self.state();
         state.gap_is_due = true;
         if let Some(statistics) = statistics {
-            state.push_control(Control::Statistics(Arc::clone(statistics)), self.limits);
+            state.push_control(TracerEvent::Statistics(Arc::clone(statistics)), self.limits);
         }
         self.wake(state);
     }
@@ -179,14 +153,14 @@ impl Lane {
     /// Puts the answer to a filter into the control lane.
     pub(super) fn push_reply(&self, reply: FilterReply) {
         let mut state = self.state();
-        state.push_control(Control::FilterReply(reply), self.limits);
+        state.push_control(TracerEvent::FilterReply(reply), self.limits);
         self.wake(state);
     }
 
     /// Puts in something of who steers. A state replaces the one before it that is not sent yet.
     pub(super) fn push_notice(&self, notice: Notice) {
         let mut state = self.state();
-        state.push_control(Control::Notice(notice), self.limits);
+        state.push_control(TracerEvent::Notice(notice), self.limits);
         self.wake(state);
     }
 
@@ -245,19 +219,64 @@ impl Lane {
         self.wake.notify_one();
     }
 
-    /// Takes what came first from the backlog: what is missing, and the batch after it, if any.
-    pub(super) fn take_backlog(&self) -> Option<(Gap, Option<Arc<PathBatch>>)> {
-        self.state().backlog.pop()
+    /// Puts a filter into force for all paths that are looked at from now on.
+    pub(super) fn set_filter(&self, revision: u32, filter: Arc<CompiledFilter>) {
+        let limit = self.filtered_limit();
+        self.population().set_filter(revision, filter, limit);
     }
 
     /// Most bytes of paths that should wait after they were filtered.
-    pub(super) fn filtered_limit(&self) -> usize {
+    fn filtered_limit(&self) -> usize {
         let budgeted = self.state().budget.bytes_per_second() * LANE_SECONDS;
         (budgeted as usize).max(MIN_LANE_BYTES).min(self.limits.lane_bytes)
     }
 
+    /// What goes to the viewer next, of whom there are `viewers`: filters, in the viewer's own task,
+    /// what has come since. `shared` are the queues of all viewers.
+    pub(super) fn next(
+        &self,
+        viewers: u32,
+        shared: impl FnOnce() -> [Queue; 3],
+        now: Instant,
+    ) -> Next {
+        let limit = self.filtered_limit();
+        let mut population = self.population();
+        // Not under the lane's lock: whoever fills it never waits for a filter.
+        while let Some((gap, batch)) = self.pop_backlog() {
+            population.miss(gap, limit);
+            if let Some(batch) = batch {
+                population.see(&batch, limit, now);
+            }
+        }
+        population.tend(limit, now);
+        let next = self.state().next(&mut population, now);
+        match next {
+            Next::Send(TracerEvent::Statistics(statistics)) => {
+                let own = self.queues().into_iter().chain([population.queue(limit)]);
+                let queues: Vec<_> = shared().into_iter().chain(own).collect();
+                let (paths_sent, paths_dropped) = population.traffic();
+                Next::Send(TracerEvent::Statistics(Arc::new(Statistics {
+                    viewers,
+                    paths_sent,
+                    paths_dropped,
+                    queued_bytes: queues.iter().filter(|q| q.own).map(|q| q.bytes).sum(),
+                    queues,
+                    filter: population.counts(),
+                    ..Arc::unwrap_or_clone(statistics)
+                })))
+            }
+            Next::Later(wait) => Next::Later(wait.into_iter().chain(population.deadline()).min()),
+            next @ (Next::Send(_) | Next::Film(_) | Next::ExplorerFilm(_)) => next,
+        }
+    }
+
+    /// Takes what came first from the backlog: what is missing, and the batch after it, if any.
+    fn pop_backlog(&self) -> Option<(Gap, Option<Arc<PathBatch>>)> {
+        self.state().backlog.pop()
+    }
+
     /// What waits in the lanes.
-    pub(super) fn queues(&self) -> [Queue; 4] {
+    fn queues(&self) -> [Queue; 4] {
         let state = self.state();
         let (film, films) = state.film.byte_len();
         let (explorer_film, explorer_films) = state.explorer_film.byte_len();
@@ -286,9 +305,8 @@ impl Lane {
         self.wake.notify_one();
     }
 
-    /// Decides what is to be sent next; `offer` says what there is of paths.
-    pub(super) fn take(&self, viewers: u32, offer: Offer, now: Instant) -> Taken {
-        self.state().take(viewers, offer, now)
+    pub(super) fn population(&self) -> MutexGuard<'_, Population> {
+        self.population.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn state(&self) -> MutexGuard<'_, LaneState> {
@@ -302,11 +320,11 @@ fn or_default(budget: u64, limits: HubLimits) -> u64 {
 
 impl LaneState {
     /// Puts in what must not be lost, and closes the lanes where there is no more room for it.
-    fn push_control(&mut self, control: Control, limits: HubLimits) {
+    fn push_control(&mut self, event: TracerEvent, limits: HubLimits) {
         if self.closed.is_some() {
             return;
         }
-        if !self.control.push(control, limits.control_messages, limits.control_bytes) {
+        if !self.control.push(event, limits.control_messages, limits.control_bytes) {
             let (waiting, bytes) = (self.control.len(), self.control.byte_len());
             self.close(format!(
                 "the viewer read too slowly: {waiting} control messages of {bytes} bytes wait for it"
@@ -314,28 +332,17 @@ impl LaneState {
         }
     }
 
-    fn take(&mut self, viewers: u32, offer: Offer, now: Instant) -> Taken {
+    fn next(&mut self, population: &mut Population, now: Instant) -> Next {
         if let Some(reason) = &self.closed {
-            return Taken::Now(Delivery::Closed(reason.clone()));
+            return Next::Send(TracerEvent::Goodbye(reason.clone()));
         }
-        match self.control.pop() {
-            Some(Control::Statistics(statistics)) => {
-                return Taken::Statistics(Statistics { viewers, ..Statistics::clone(&statistics) });
-            }
-            Some(Control::FilterReply(reply)) => {
-                return Taken::Now(Delivery::FilterReply(reply));
-            }
-            Some(Control::Notice(notice)) => return Taken::Now(Delivery::Notice(notice)),
-            None => {}
+        if let Some(event) = self.control.pop() {
+            return Next::Send(event);
         }
-        if let Some(item) = self.focus.pop() {
+        if let Some(event) = self.focus.pop() {
             // Ahead of the other data, but not for free.
-            self.budget.spend(item.byte_len());
-            return Taken::Now(match item {
-                FocusItem::Path(path) => Delivery::FocusPath(path),
-                FocusItem::Step(step) => Delivery::FocusStep(step),
-                FocusItem::Gap(steps) => Delivery::FocusGap(steps),
-            });
+            self.budget.spend(event.byte_len());
+            return Next::Send(event);
         }
         match self.phase {
             // The budget is ignored: a viewer is to have the snapshot within a second.
@@ -344,45 +351,47 @@ impl LaneState {
                 if self.film.is_between() {
                     self.phase = Phase::SnapshotEnd;
                 }
-                rows.map_or(Taken::Later(None), Taken::Film)
+                rows.map_or(Next::Later(None), Next::Film)
             }
             Phase::SnapshotEnd => {
                 self.phase = Phase::Live;
-                Taken::Now(Delivery::SnapshotEnd)
+                Next::Send(TracerEvent::SnapshotEnd)
             }
-            Phase::Live => self.take_data(offer, now),
+            Phase::Live => self.next_data(population, now),
         }
     }
 
-    fn take_data(&mut self, offer: Offer, now: Instant) -> Taken {
+    fn next_data(&mut self, population: &mut Population, now: Instant) -> Next {
         let wait = self.budget.wait(now);
-        let batch_is_next = wait.is_none() && offer.batch.is_some();
-        if offer.gap && (batch_is_next || self.gap_is_due) {
+        let has_batch = population.has_batch();
+        if (wait.is_none() && has_batch || self.gap_is_due)
+            && let Some(gap) = population.pop_gap()
+        {
             self.gap_is_due = false;
-            return Taken::Gap;
+            return Next::Send(TracerEvent::Gap(gap));
         }
         let films = self.film.is_waiting() || self.explorer_film.is_waiting();
-        if wait.is_some() && (films || offer.batch.is_some()) {
-            return Taken::Later(wait);
+        if wait.is_some() && (films || has_batch) {
+            return Next::Later(wait);
         }
-        let prefers_paths = self.film_was_last && offer.batch.is_some();
+        let prefers_paths = self.film_was_last && has_batch;
         if !prefers_paths && let Some(order) = self.film.take_rows() {
             self.film_was_last = true;
             self.budget.spend(order.byte_len());
-            return Taken::Film(order);
+            return Next::Film(order);
         }
         if !prefers_paths && let Some(order) = self.explorer_film.take_rows() {
             self.film_was_last = true;
             self.budget.spend(order.byte_len());
-            return Taken::ExplorerFilm(order);
+            return Next::ExplorerFilm(order);
         }
-        match offer.batch {
-            Some(bytes) => {
+        match population.pop_batch() {
+            Some(batch) => {
                 self.film_was_last = false;
-                self.budget.spend(bytes);
-                Taken::Paths
+                self.budget.spend(batch.byte_len());
+                Next::Send(TracerEvent::Paths(batch))
             }
-            None => Taken::Later(None),
+            None => Next::Later(None),
         }
     }
 

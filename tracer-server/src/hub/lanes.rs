@@ -86,16 +86,16 @@ struct Seen {
 }
 
 impl Seen {
-    fn take(&mut self, deliveries: Vec<Delivery>) {
+    fn take(&mut self, deliveries: Vec<TracerEvent>) {
         for delivery in deliveries {
             match delivery {
-                Delivery::FocusPath(path) => self.path = Some(FocusPath::clone(&path)),
-                Delivery::FocusStep(step) => {
+                TracerEvent::FocusPath(path) => self.path = Some(FocusPath::clone(&path)),
+                TracerEvent::FocusStep(step) => {
                     let path = self.path.take().expect("a whole path comes first");
                     self.path = Some(path.after(&step).expect("no step is missing"));
                     self.steps += 1;
                 }
-                Delivery::FocusGap(steps) => {
+                TracerEvent::FocusGap(steps) => {
                     assert!(steps > 0, "a gap is a loss");
                     self.missed += steps;
                     self.path = None;
@@ -203,8 +203,8 @@ async fn states_replace_each_other_and_replies_do_not() {
         .await
         .into_iter()
         .filter_map(|delivery| match delivery {
-            Delivery::Notice(notice) => Some(notice),
-            Delivery::Closed(reason) => panic!("states alone fill no lane: {reason}"),
+            TracerEvent::Notice(notice) => Some(notice),
+            TracerEvent::Goodbye(reason) => panic!("states alone fill no lane: {reason}"),
             _ => None,
         })
         .collect();
@@ -212,12 +212,16 @@ async fn states_replace_each_other_and_replies_do_not() {
     assert_eq!(heard.len(), 6, "the newest states, and every reply: {heard:?}");
     let late = hub.subscribe(0).expect("a viewer");
     let states = delivered(&late).await;
-    let is_state =
-        |d: &&Delivery| matches!(d, Delivery::Notice(Notice::Explorer(_) | Notice::Presence(_)));
+    let is_state = |d: &&TracerEvent| {
+        matches!(d, TracerEvent::Notice(Notice::Explorer(_) | Notice::Presence(_)))
+    };
     assert_eq!(states.iter().filter(is_state).count(), 2, "who comes late hears both: {states:?}");
     for request in 0..20 {
         hub.tell(viewer.session(), Notice::Reply(OrderReply { request, error: None }));
     }
     let last = delivered(&viewer).await.pop();
-    assert!(matches!(last, Some(Delivery::Closed(_))), "a viewer must read its replies: {last:?}");
+    assert!(
+        matches!(last, Some(TracerEvent::Goodbye(_))),
+        "a viewer must read its replies: {last:?}"
+    );
 }

@@ -29,18 +29,16 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use common::{
     ChainState, CompiledFilter, ExplorerState, FilmFrame, FilterReply, FocusPath, Gap,
-    MAX_VERTICES, Notice, OrderReply, PathBatch, Presence, Queue, Statistics,
+    MAX_VERTICES, Notice, OrderReply, PathBatch, Presence, Queue, Statistics, TracerEvent,
 };
 use thiserror::Error;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, timeout_at};
 
 pub use focus::FocusNews;
-pub use lane::Delivery;
 pub use pump::Pump;
 
-use lane::{Lane, Taken};
-use population::Population;
+use lane::{Lane, Next};
 
 /// What bounds the hub's queues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -293,8 +291,8 @@ impl Hub {
         sent
     }
 
-    /// Adds a viewer with a data budget in bytes a second (0 for the default). Its first deliveries
-    /// are the snapshot.
+    /// Adds a viewer with a data budget in bytes a second (0 for the default). What it hears
+    /// first is the snapshot.
     pub fn subscribe(&self, budget: u64) -> Result<Subscription, HubFull> {
         let limits = self.shared.limits;
         let mut registry = self.shared.registry();
@@ -308,8 +306,7 @@ impl Hub {
         registry.lanes.push(Arc::clone(&lane));
         self.shared.count(&registry);
         drop(registry);
-        let population = Mutex::new(Population::new(lane.session()));
-        Ok(Subscription { shared: Arc::clone(&self.shared), lane, population })
+        Ok(Subscription { shared: Arc::clone(&self.shared), lane })
     }
 }
 
@@ -368,7 +365,7 @@ impl Lost {
         self.bytes.fetch_add(gap.bytes, Ordering::Relaxed);
     }
 
-    fn take(&self) -> Gap {
+    fn drain(&self) -> Gap {
         Gap {
             batches: self.batches.swap(0, Ordering::Relaxed),
             paths: self.paths.swap(0, Ordering::Relaxed),
@@ -382,8 +379,6 @@ impl Lost {
 pub struct Subscription {
     shared: Arc<Shared>,
     lane: Arc<Lane>,
-    /// Touched by the viewer's own task only.
-    population: Mutex<Population>,
 }
 
 impl Subscription {
@@ -415,14 +410,13 @@ impl Subscription {
     /// Puts a filter into force, for all paths that are looked at from now on, and replies to it. Each
     /// batch names its filter, and no path is lost or seen twice by the change.
     pub fn set_filter(&self, revision: u32, filter: Arc<CompiledFilter>) {
-        let limit = self.lane.filtered_limit();
         let reply = FilterReply {
             revision,
             text: filter.text().to_owned(),
             conditions: filter.condition_texts().to_vec(),
             ..FilterReply::default()
         };
-        self.population().set_filter(revision, filter, limit);
+        self.lane.set_filter(revision, filter);
         self.reply(reply);
     }
 
@@ -438,67 +432,20 @@ impl Subscription {
     }
 
     /// Waits for what goes to the viewer next. Nothing is lost when the wait is abandoned.
-    pub async fn next(&self) -> Delivery {
+    pub async fn next(&self) -> TracerEvent {
         loop {
             // Holds a permit if the lane was filled since, so that no wake-up is missed.
             let filled = self.lane.filled();
-            let wait = match self.look(Instant::now()) {
-                Ok(delivery) => return delivery,
-                Err(wait) => wait,
-            };
-            match wait {
-                None => filled.await,
+            let viewers = self.shared.viewers.load(Ordering::Relaxed) as u32;
+            match self.lane.next(viewers, || self.shared.queues(), Instant::now()) {
+                Next::Send(event) => return event,
+                Next::Film(order) => return TracerEvent::Film(order.tile()),
+                Next::ExplorerFilm(order) => return TracerEvent::ExplorerFilm(order.tile()),
+                Next::Later(None) => filled.await,
                 // Whether time or news ended the wait, the lane is looked at again.
-                Some(instant) => drop(timeout_at(instant, filled).await),
+                Next::Later(Some(instant)) => drop(timeout_at(instant, filled).await),
             }
         }
-    }
-
-    /// What goes to the viewer now, or when to look again unless the lane is filled before.
-    fn look(&self, now: Instant) -> Result<Delivery, Option<Instant>> {
-        let viewers = self.shared.viewers.load(Ordering::Relaxed) as u32;
-        let mut population = self.population();
-        let limit = self.lane.filtered_limit();
-        while let Some((gap, batch)) = self.lane.take_backlog() {
-            population.miss(gap, limit);
-            if let Some(batch) = batch {
-                population.see(&batch, limit, now);
-            }
-        }
-        population.tend(limit, now);
-        match self.lane.take(viewers, population.offer(), now) {
-            Taken::Now(delivery) => Ok(delivery),
-            Taken::Film(order) => Ok(Delivery::Film(order.tile())),
-            Taken::ExplorerFilm(order) => Ok(Delivery::ExplorerFilm(order.tile())),
-            Taken::Statistics(statistics) => {
-                let (paths_sent, paths_dropped) = population.traffic();
-                let filter = population.counts();
-                let filtered = Queue {
-                    name: "filtered paths".to_owned(),
-                    bytes: population.byte_len() as u64,
-                    limit: limit as u64,
-                    own: true,
-                };
-                let own = self.lane.queues().into_iter().chain([filtered]);
-                let queues: Vec<_> = self.shared.queues().into_iter().chain(own).collect();
-                let queued_bytes = queues.iter().filter(|q| q.own).map(|q| q.bytes).sum();
-                Ok(Delivery::Statistics(Statistics {
-                    paths_sent,
-                    paths_dropped,
-                    queued_bytes,
-                    queues,
-                    filter,
-                    ..statistics
-                }))
-            }
-            Taken::Gap => population.take_gap().map(Delivery::Gap).ok_or(None),
-            Taken::Paths => population.take_batch().map(Delivery::Paths).ok_or(None),
-            Taken::Later(wait) => Err(wait.into_iter().chain(population.deadline()).min()),
-        }
-    }
-
-    fn population(&self) -> MutexGuard<'_, Population> {
-        self.population.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use common::{
     BatchBuilder, BatchLimits, BatchOrigin, CompiledFilter, FilterCounts, FilterTally, Gap,
-    PathBatch, PathView,
+    PathBatch, PathView, Queue,
 };
 use tokio::time::Instant;
 
@@ -70,15 +70,6 @@ struct Control {
     sent: usize,
 }
 
-/// What could be sent now.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Offer {
-    /// A gap stands first.
-    pub(super) gap: bool,
-    /// The size of the first batch.
-    pub(super) batch: Option<usize>,
-}
-
 impl Population {
     /// All paths; `key` picks where the sampling starts.
     pub(super) fn new(key: u64) -> Self {
@@ -114,9 +105,14 @@ impl Population {
         (self.paths_sent, self.paths_dropped)
     }
 
-    /// Bytes that wait to be sent.
-    pub(super) fn byte_len(&self) -> usize {
-        self.ready_bytes + self.open.builder.byte_len()
+    /// What waits to be sent, of at most about `limit` bytes.
+    pub(super) fn queue(&self, limit: usize) -> Queue {
+        Queue {
+            name: "filtered paths".to_owned(),
+            bytes: (self.ready_bytes + self.open.builder.byte_len()) as u64,
+            limit: limit as u64,
+            own: true,
+        }
     }
 
     /// Takes in what is missing. Nothing is packed across it.
@@ -172,7 +168,7 @@ impl Population {
         } else {
             None
         };
-        self.open.take(path, wanted, weight);
+        self.open.add(path, wanted, weight);
     }
 
     /// Completes the open batch if it has waited long enough, and adapts the decimation.
@@ -216,43 +212,32 @@ impl Population {
         }
     }
 
-    /// What could be sent.
-    pub(super) fn offer(&self) -> Offer {
-        let size = |ready: Option<&Ready>| match ready {
-            Some(Ready::Batch(batch)) => Some(batch.byte_len()),
-            Some(Ready::Gap(_)) | None => None,
-        };
-        let gap = matches!(self.ready.front(), Some(Ready::Gap(_)));
-        Offer { gap, batch: size(self.ready.get(usize::from(gap))) }
+    /// True when a batch is ready, whether or not a gap stands before it.
+    pub(super) fn has_batch(&self) -> bool {
+        self.ready.iter().any(|ready| matches!(ready, Ready::Batch(_)))
     }
 
     /// Takes the gap that stands first.
-    pub(super) fn take_gap(&mut self) -> Option<Gap> {
-        match self.ready.pop_front() {
-            Some(Ready::Gap(gap)) => Some(gap),
-            Some(batch) => {
-                self.ready.push_front(batch);
-                None
-            }
-            None => None,
-        }
+    pub(super) fn pop_gap(&mut self) -> Option<Gap> {
+        let gap = match self.ready.front() {
+            Some(Ready::Gap(gap)) => *gap,
+            Some(Ready::Batch(_)) | None => return None,
+        };
+        self.ready.pop_front();
+        Some(gap)
     }
 
     /// Takes the batch that stands first.
-    pub(super) fn take_batch(&mut self) -> Option<Arc<PathBatch>> {
-        match self.ready.pop_front() {
-            Some(Ready::Batch(batch)) => {
-                self.ready_bytes -= batch.byte_len();
-                self.control.sent += batch.byte_len();
-                self.paths_sent += batch.len() as u64;
-                Some(batch)
-            }
-            Some(gap) => {
-                self.ready.push_front(gap);
-                None
-            }
-            None => None,
-        }
+    pub(super) fn pop_batch(&mut self) -> Option<Arc<PathBatch>> {
+        let batch = match self.ready.front() {
+            Some(Ready::Batch(batch)) => Arc::clone(batch),
+            Some(Ready::Gap(_)) | None => return None,
+        };
+        self.ready.pop_front();
+        self.ready_bytes -= batch.byte_len();
+        self.control.sent += batch.byte_len();
+        self.paths_sent += batch.len() as u64;
+        Some(batch)
     }
 
     /// Makes the open batch ready, even if it holds no path: what it saw is to be told.
@@ -307,7 +292,7 @@ impl Open {
     }
 
     /// Counts a path, and puts it in if it has a weight.
-    fn take(&mut self, path: &PathView<'_>, wanted: bool, weight: Option<f32>) {
+    fn add(&mut self, path: &PathView<'_>, wanted: bool, weight: Option<f32>) {
         let steps = f64::from(path.header.weight);
         self.origin.seen += 1;
         self.origin.seen_steps += steps;

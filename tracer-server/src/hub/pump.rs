@@ -45,7 +45,7 @@ impl Pump {
                 () = shutdown.cancelled() => break,
                 _ = tick.tick() => self.tick(),
                 Some(news) = self.news.recv() => self.accept(news),
-                Some(news) = self.focus.recv() => self.follow(&news),
+                Some(news) = self.focus.recv() => self.forward_focus(&news),
                 Some(batch) = self.paths.recv() => self.distribute(batch),
                 else => break,
             }
@@ -105,7 +105,7 @@ impl Pump {
         NumberedFilm { sequence: self.film_sequence, frame }
     }
 
-    fn follow(&self, news: &FocusNews) {
+    fn forward_focus(&self, news: &FocusNews) {
         self.shared.waiting_focus_bytes.fetch_sub(news.byte_len(), Ordering::Relaxed);
         let mut registry = self.shared.registry();
         for lane in &registry.lanes {
@@ -126,7 +126,7 @@ impl Pump {
 
     /// Tells every viewer what never reached the pump. The sequence numbers skip it.
     fn report_lost(&mut self) {
-        let lost = self.shared.lost.take();
+        let lost = self.shared.lost.drain();
         if lost == Gap::default() {
             return;
         }

@@ -92,11 +92,11 @@ struct Received {
 }
 
 impl Received {
-    fn take(&mut self, deliveries: Vec<Delivery>) {
+    fn take(&mut self, deliveries: Vec<TracerEvent>) {
         for delivery in deliveries {
             match delivery {
-                Delivery::Paths(batch) => self.take_batch(&batch),
-                Delivery::Gap(gap) => {
+                TracerEvent::Paths(batch) => self.take_batch(&batch),
+                TracerEvent::Gap(gap) => {
                     self.next += gap.batches;
                     self.gap.batches += gap.batches;
                     self.gap.paths += gap.paths;
@@ -184,7 +184,7 @@ proptest! {
             let last: Vec<_> = received.origins.iter().filter(|o| o.revision == revision).collect();
             assert_eq!(last.iter().map(|o| o.seen).sum::<u64>(), seen, "paths seen");
             assert_eq!(last.iter().map(|o| o.matched).sum::<u64>(), matched, "paths wanted");
-            let counts = viewer.population().counts();
+            let counts = viewer.lane.population().counts();
             assert_eq!((counts.seen, counts.matched), (seen, matched), "the tally agrees");
         });
     }
@@ -227,7 +227,7 @@ async fn a_budget_decimates_and_accounts_for_every_path() {
     let weights: f64 = received.paths.iter().map(|(header, _)| f64::from(header.weight)).sum();
     assert!((weights / wanted - 1.0).abs() < 0.02, "{weights} steps stand for {wanted}");
     assert!(received.origins.iter().any(|origin| origin.decimation > 1.0), "it was decimated");
-    let counts = viewer.population().counts();
+    let counts = viewer.lane.population().counts();
     assert_eq!(counts.seen, 200_000, "the tally saw even what was dropped afterwards");
     assert!(counts.matched_steps >= wanted, "{counts:?}");
 }
@@ -244,7 +244,7 @@ async fn an_empty_selection_still_counts() {
     }
     let early = delivered(&viewer).await;
     assert!(
-        matches!(early.as_slice(), [Delivery::FilterReply(reply), Delivery::SnapshotEnd]
+        matches!(early.as_slice(), [TracerEvent::FilterReply(reply), TracerEvent::SnapshotEnd]
             if reply.revision == 7 && reply.conditions == ["edges > 64"]),
         "the reply comes first: {early:?}"
     );

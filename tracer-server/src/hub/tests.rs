@@ -45,13 +45,13 @@ async fn settle() {
 }
 
 /// What is there to be sent within a millisecond.
-pub(super) async fn delivered(subscription: &Subscription) -> Vec<Delivery> {
+pub(super) async fn delivered(subscription: &Subscription) -> Vec<TracerEvent> {
     let mut all = Vec::new();
     while let Ok(delivery) =
         tokio::time::timeout(Duration::from_millis(1), subscription.next()).await
     {
         all.push(delivery);
-        if matches!(all.last(), Some(Delivery::Closed(_))) {
+        if matches!(all.last(), Some(TracerEvent::Goodbye(_))) {
             break;
         }
     }
@@ -67,7 +67,7 @@ async fn a_late_viewer_gets_the_newest_snapshot() {
     settle().await;
     let viewer = hub.subscribe(0).expect("the first viewer");
     let deliveries = delivered(&viewer).await;
-    let [Delivery::Statistics(statistics), Delivery::Film(tile), Delivery::SnapshotEnd] =
+    let [TracerEvent::Statistics(statistics), TracerEvent::Film(tile), TracerEvent::SnapshotEnd] =
         deliveries.as_slice()
     else {
         panic!("not a snapshot: {deliveries:?}");
@@ -83,7 +83,7 @@ async fn nobody_watching_costs_nothing() {
     hub.publish_paths(batch(1));
     let viewer = hub.subscribe(0).expect("the first viewer");
     assert!(hub.wants_paths(), "now one does");
-    assert_eq!(delivered(&viewer).await, [Delivery::SnapshotEnd]);
+    assert_eq!(delivered(&viewer).await, [TracerEvent::SnapshotEnd]);
     drop(viewer);
     assert!(!hub.wants_paths(), "it left");
 }
@@ -95,21 +95,22 @@ async fn a_stalled_viewer_loses_the_oldest_and_is_told() {
     let (hub, _tasks) = running_hub(limits);
     let stalled = hub.subscribe(0).expect("a viewer");
     let reading = hub.subscribe(0).expect("another viewer");
-    assert_eq!(delivered(&stalled).await, [Delivery::SnapshotEnd]);
-    assert_eq!(delivered(&reading).await, [Delivery::SnapshotEnd]);
+    assert_eq!(delivered(&stalled).await, [TracerEvent::SnapshotEnd]);
+    assert_eq!(delivered(&reading).await, [TracerEvent::SnapshotEnd]);
     for sequence in 0..10 {
         hub.publish_paths(one.clone());
         let got = delivered(&reading).await;
-        let expected = Delivery::Paths(Arc::new(one.clone().into_source().with_sequence(sequence)));
+        let expected =
+            TracerEvent::Paths(Arc::new(one.clone().into_source().with_sequence(sequence)));
         assert_eq!(got, [expected], "a reading viewer gets every batch");
     }
     let got = delivered(&stalled).await;
     let gap = Gap { batches: 7, paths: 700, bytes: 7 * one.byte_len() as u64 };
-    assert_eq!(got[0], Delivery::Gap(gap), "the gap stands where the batches are missing");
+    assert_eq!(got[0], TracerEvent::Gap(gap), "the gap stands where the batches are missing");
     let sequences: Vec<_> = got[1..]
         .iter()
         .map(|delivery| match delivery {
-            Delivery::Paths(batch) => batch.sequence(),
+            TracerEvent::Paths(batch) => batch.sequence(),
             other => panic!("not paths: {other:?}"),
         })
         .collect();
@@ -123,14 +124,14 @@ async fn a_viewer_that_never_reads_is_disconnected() {
     hub.publish_statistics(Arc::new(Statistics::default()));
     tokio::time::sleep(Duration::from_secs(40)).await;
     let got = delivered(&viewer).await;
-    assert!(matches!(got.as_slice(), [Delivery::Closed(_)]), "closed with a reason: {got:?}");
+    assert!(matches!(got.as_slice(), [TracerEvent::Goodbye(_)]), "closed with a reason: {got:?}");
 }
 
 #[tokio::test(start_paused = true)]
 async fn films_coalesce_but_finish() {
     let (hub, _tasks) = running_hub(HubLimits::default());
     let viewer = hub.subscribe(1 << 30).expect("a viewer");
-    assert_eq!(delivered(&viewer).await, [Delivery::SnapshotEnd]);
+    assert_eq!(delivered(&viewer).await, [TracerEvent::SnapshotEnd]);
     for value in 1..=5 {
         hub.publish_film(film(512, 512, f64::from(value)));
     }
@@ -138,7 +139,7 @@ async fn films_coalesce_but_finish() {
         .await
         .into_iter()
         .map(|delivery| match delivery {
-            Delivery::Film(tile) => tile,
+            TracerEvent::Film(tile) => tile,
             other => panic!("not film: {other:?}"),
         })
         .collect();
@@ -172,7 +173,7 @@ fn without_a_pump_producers_lose_but_never_wait() {
         hub.publish_paths(batch(10));
         hub.publish_film(film(1, 1, 0.0));
     }
-    let lost = hub.shared.lost.take();
+    let lost = hub.shared.lost.drain();
     assert_eq!(lost.batches, 10_000 - INGRESS_BATCHES as u64);
     let waiting = hub.shared.waiting_bytes.load(Ordering::Relaxed);
     assert_eq!(waiting, INGRESS_BATCHES * batch(10).byte_len(), "what waits is counted");

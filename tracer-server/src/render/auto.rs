@@ -6,12 +6,12 @@ use cpu_time::ProcessTime;
 
 use super::{Budget, Progress, RenderSettings, Rendering, Report, chain_report};
 use crate::chain::Normalization;
-use crate::image_file::Plane;
 use crate::parallel::Stop;
 use crate::replicate::{
     Advance, Ledger, Limits, Origin, Part, Picture, Plan, PlanSettings, Selection, TILE, prepare,
 };
 use crate::scene::Scene;
+use host::picture::Plane;
 
 /// Numbers of replicates after which a picture that is to reach an error is looked at: each is about
 /// a third more than the one before.

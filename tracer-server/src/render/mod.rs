@@ -161,6 +161,8 @@ pub struct Report {
     pub relative_mse: Option<f64>,
     /// Sum of the image over the sum of the reference, if there was one.
     pub mean_ratio: Option<f64>,
+    /// Pixels of the reference that have no value, and were left out of both.
+    pub reference_missing: usize,
 }
 
 /// What one strategy did. Rates are shares of all tries.

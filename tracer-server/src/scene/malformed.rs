@@ -1,5 +1,6 @@
 //! Bad input of every kind: each must give a message that names file, place and remedy.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
@@ -280,6 +281,32 @@ fn what_is_no_scene_is_refused() {
     assert!(inside("d.glb").contains("glTF scenes are not supported"), "glTF");
     assert!(inside("e").contains("extensionless scenes are not supported"), "no extension");
     assert!(inside("a.obj").contains("no surface"), "an empty OBJ");
+}
+
+#[test]
+fn materials_may_be_called_anything() {
+    let names =
+        ["Material #25", "Material #26", "a;b 100%", "O'Brien \"glass\"", "стекло", "##", "lamp"];
+    let directory = tempfile::tempdir().expect("a directory");
+    let mut mtl = String::from("# made by hand\n");
+    let mut obj = String::from("mtllib part #1.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    for name in names {
+        writeln!(mtl, "newmtl {name}\nKd 0.5 0.5 0.5 # grey\nKe 1 1 1").expect("a string");
+        writeln!(obj, "usemtl {name}\nf 1 2 3 # a face").expect("a string");
+    }
+    // A comment behind a name is none of it where another name fits only so.
+    mtl += "newmtl red # shiny\nKd 1 0 0\n";
+    obj += "usemtl red\nf 1 2 3\nusemtl lamp # the same\nf 1 3 2\n";
+    fs::write(directory.path().join("part #1.mtl"), mtl).expect("written");
+    let path = directory.path().join("a.obj");
+    fs::write(&path, obj).expect("written");
+    let loaded = load(path.to_str().expect("UTF-8")).expect("a scene");
+    let description = loaded.description;
+    let found: Vec<&str> = description.materials.iter().map(|m| m.name.as_str()).collect();
+    assert_eq!(found, [&names[..], &["red # shiny"]].concat(), "as many materials as names");
+    let used: Vec<u16> = description.meshes.iter().flat_map(|m| m.materials.clone()).collect();
+    assert_eq!(used, [0, 1, 2, 3, 4, 5, 6, 7, 6], "each face has its own");
+    assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
 }
 
 #[test]

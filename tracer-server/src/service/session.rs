@@ -4,11 +4,11 @@ use std::error::Error as _;
 use std::sync::Arc;
 
 use common::{
-    CompiledFilter, DetailReply, Filter, FilterError, FilterReply, FilterScene, Notice, Order,
-    OrderReply, PathId, Role, Welcome,
+    CompiledFilter, DetailReply, FilterError, FilterReply, FilterScene, FilterText, Notice, Order,
+    OrderReply, PathId, Role, TracerEvent, Welcome,
 };
-use proto::v1::{self, TracerMessage, ViewerMessage, tracer_message::Kind};
-use proto::{Hello, NumberedOrder, TracerEvent, ViewerEvent, WantedFilter, WireError};
+use proto::v1::{TracerMessage, ViewerMessage};
+use proto::{Hello, NumberedOrder, ViewerEvent, WantedFilter, WireError};
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep_until};
 use tokio_util::sync::CancellationToken;
@@ -17,7 +17,7 @@ use tonic::{Status, Streaming};
 use super::outbound::Sender;
 use super::roster::{Entry, Roster};
 use super::{FILTER_INTERVAL, HELLO_TIMEOUT, SHUTTING_DOWN};
-use crate::hub::{Delivery, Subscription};
+use crate::hub::Subscription;
 use crate::steering::{Envelope, Steering};
 
 /// Waits for the hello, which must come first and soon.
@@ -47,14 +47,14 @@ pub(super) async fn handshake(inbound: &mut Streaming<ViewerMessage>) -> Result<
 
 /// Refuses a viewer whose hello asks for a filter that makes no sense.
 pub(super) fn check_filter(hello: &Hello, scene: &FilterScene) -> Result<(), Status> {
-    let Some(WantedFilter { text, .. }) = &hello.filter else { return Ok(()) };
-    understand(text, scene)
-        .map(drop)
-        .map_err(|error| Status::invalid_argument(format!("the filter:\n{}", error.pointed(text))))
+    let Some(WantedFilter { filter, .. }) = &hello.filter else { return Ok(()) };
+    understand(filter, scene).map(drop).map_err(|error| {
+        Status::invalid_argument(format!("the filter:\n{}", error.pointed(filter.text())))
+    })
 }
 
-fn understand(text: &str, scene: &FilterScene) -> Result<CompiledFilter, FilterError> {
-    Filter::parse(text)?.compile(scene)
+fn understand(filter: &FilterText, scene: &FilterScene) -> Result<CompiledFilter, FilterError> {
+    filter.tree().map_err(Clone::clone)?.compile(scene)
 }
 
 /// The status that a malformed message is answered with.
@@ -194,7 +194,7 @@ impl Session {
         mut inbound: Streaming<ViewerMessage>,
         messages: &mpsc::Sender<TracerMessage>,
     ) -> End {
-        let welcome = TracerMessage::from(&TracerEvent::Welcome(welcome));
+        let welcome = TracerMessage::from(&TracerEvent::Welcome(Box::new(welcome)));
         // The channel is empty: this does not wait.
         if messages.send(welcome).await.is_err() {
             return End::Left("it hung up".to_owned());
@@ -315,10 +315,10 @@ impl Session {
     }
 
     fn set_filter(&self, wanted: WantedFilter) {
-        let WantedFilter { revision, text } = wanted;
-        match understand(&text, &self.shared.filter_scene) {
+        let revision = wanted.revision;
+        match understand(&wanted.filter, &self.shared.filter_scene) {
             Ok(filter) => {
-                self.shared.roster.keep_filter(self.number(), WantedFilter { revision, text });
+                self.shared.roster.keep_filter(self.number(), wanted);
                 self.subscription.set_filter(revision, Arc::new(filter));
             }
             Err(error) => {
@@ -334,21 +334,11 @@ impl Session {
         let Ok(room) = messages.reserve().await else {
             return Some(End::Left("it hung up".to_owned()));
         };
-        let kind = match self.subscription.next().await {
-            Delivery::Closed(reason) => return Some(End::Dismissed(reason)),
-            Delivery::Paths(batch) => Kind::PathBatch((&*batch).into()),
-            Delivery::Film(tile) => Kind::FilmTile((&tile).into()),
-            Delivery::Statistics(statistics) => Kind::Statistics((&statistics).into()),
-            Delivery::Gap(gap) => Kind::Gap(gap.into()),
-            Delivery::FilterReply(reply) => Kind::FilterReply((&reply).into()),
-            Delivery::Notice(notice) => (&notice).into(),
-            Delivery::FocusPath(path) => Kind::FocusPath((&*path).into()),
-            Delivery::FocusStep(step) => Kind::FocusStep((&*step).into()),
-            Delivery::FocusGap(steps) => Kind::FocusGap(v1::FocusGap { steps }),
-            Delivery::ExplorerFilm(tile) => Kind::ExplorerFilm((&tile).into()),
-            Delivery::SnapshotEnd => Kind::SnapshotEnd(v1::SnapshotEnd {}),
-        };
-        room.send(TracerMessage { kind: Some(kind) });
+        let event = self.subscription.next().await;
+        if let TracerEvent::Goodbye(reason) = event {
+            return Some(End::Dismissed(reason));
+        }
+        room.send(TracerMessage::from(&event));
         None
     }
 }

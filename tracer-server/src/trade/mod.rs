@@ -9,7 +9,7 @@ mod summary;
 pub use chart::draw;
 pub use summary::{Efficiency, Quantiles, Summary, slope, summarize};
 
-use common::{Floor, mean_of_smallest, mean_ratio, relative_errors};
+use common::{Floor, known, mean_of_smallest, mean_ratio, relative_errors};
 use serde::Serialize;
 
 use crate::film::Film;
@@ -143,7 +143,8 @@ impl Plan<'_> {
     }
 
     fn errors(&self, image: &Film) -> Vec<f64> {
-        relative_errors(image.pixels(), self.reference.pixels(), self.floor)
+        let reference = self.reference.pixels();
+        known(relative_errors(image.pixels(), reference, self.floor), reference)
     }
 }
 

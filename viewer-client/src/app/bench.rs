@@ -4,12 +4,13 @@
 //! "CPU side" is the time until all commands are recorded, without what draws them.
 
 use std::io::{self, Write as _};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
 use common::{
     BatchBuilder, BatchLimits, ChainId, Event, PathBatch, PathHeader, PathId, StrategyId,
-    VertexKind, VertexRecord,
+    TracerEvent, VertexKind, VertexRecord,
 };
 use cpu_time::ProcessTime;
 use rand_core::{Rng as _, SeedableRng as _};
@@ -20,8 +21,7 @@ use crate::app::Viewer;
 use crate::app::cli::BenchArgs;
 use crate::app::headless::Stage;
 use crate::command::Command;
-use crate::source::connection::Delivery;
-use crate::source::status::Status;
+use crate::source::Source;
 use crate::value::Bounds;
 use crate::value::format;
 
@@ -121,7 +121,7 @@ impl Figures {
 
 fn measure(paths: u32, args: &BenchArgs) -> anyhow::Result<Figures> {
     let mut stage = Stage::like_a_window(args.size)?;
-    let mut viewer = Viewer::new(Status::new("nowhere".to_owned(), true));
+    let mut viewer = Viewer::new(Source::daemon("nowhere".to_owned(), true));
     let corners = [[-REACH; 3], [REACH; 3]];
     viewer.show_bounds(Bounds::of(&corners).context("the box is empty")?);
     for command in LOOK {
@@ -197,7 +197,9 @@ fn fill(viewer: &mut Viewer, paths: u32, vertices: usize) -> Duration {
             continue;
         };
         let started = Instant::now();
-        viewer.take(Delivery { batches: [batch].into(), ..Delivery::default() });
+        if let Some(inbox) = viewer.inbox() {
+            inbox.put(TracerEvent::Paths(Arc::new(batch)));
+        }
         viewer.receive();
         taken += started.elapsed();
     }

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use anyhow::{Context as _, anyhow};
 use clap::{Args, Parser, Subcommand};
-use common::{Filter, Order, PathId};
+use common::{FilterText, Order, PathId};
 
 use crate::app::share;
 use crate::command::{self, Command};
@@ -48,7 +48,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Action {
     /// Prints what a daemon sends, one line a batch of paths.
-    Watch(WatchArgs),
+    Watch(Box<WatchArgs>),
     /// Measures how fast random paths are drawn, without a window or a daemon.
     Bench(BenchArgs),
 }
@@ -59,7 +59,7 @@ pub struct ViewArgs {
     /// HOST:PORT of a running daemon, a link to a view of one (lvis://...), or a file of paths as
     /// Mitsuba 0.6 prints them; without any, a daemon is started inside this program.
     #[arg(value_name = "ADDR|FILE", value_parser = source)]
-    pub source: Option<Source>,
+    pub source: Option<Target>,
     /// How a daemon elsewhere is trusted.
     #[command(flatten)]
     pub trust: TrustArgs,
@@ -91,7 +91,7 @@ pub struct ViewArgs {
 
 /// Where paths come from.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum Target {
     /// HOST:PORT of a daemon, or a link to a view of one.
     Daemon(String),
     /// A file of paths.
@@ -110,7 +110,7 @@ pub struct WatchArgs {
     /// Which paths to show, such as `lpe "CDS+L"` or `any in sphere(0, 1, 0, 0.5)`; see
     /// docs/FILTERS.md.
     #[arg(long, value_name = "TEXT", value_parser = filter)]
-    pub filter: Option<String>,
+    pub filter: Option<FilterText>,
     /// One JSON object a line.
     #[arg(long)]
     pub json: bool,
@@ -192,8 +192,8 @@ impl TrustArgs {
 }
 
 fn long_help() -> String {
-    let comment = ("# ...", "a comment, to the end of the line");
-    let lines = command::forms().chain([comment]);
+    let comment = ("# ...".to_owned(), "A comment, to the end of the line".to_owned());
+    let lines = command::forms().map(|form| (form.text(), form.help())).chain([comment]);
     let lines: Vec<String> = lines.map(|(form, help)| format!("  {form:<50} {help}")).collect();
     let commands = lines.join("\n");
     format!(
@@ -204,9 +204,9 @@ fn long_help() -> String {
 /// Endings of scene files.
 const SCENES: [&str; 3] = ["toml", "xml", "obj"];
 
-fn source(text: &str) -> Result<Source, String> {
+fn source(text: &str) -> Result<Target, String> {
     if text.starts_with(share::SCHEME) {
-        return address_or_link(text).map(Source::Daemon);
+        return address_or_link(text).map(Target::Daemon);
     }
     let path = Path::new(text);
     if path.is_dir() {
@@ -219,7 +219,7 @@ fn source(text: &str) -> Result<Source, String> {
         return if SCENES.iter().any(|scene| ending.eq_ignore_ascii_case(scene)) {
             Err(format!("this is a scene, and no file of paths; open it with `--scene {text}`"))
         } else {
-            Ok(Source::File(path.to_owned()))
+            Ok(Target::File(path.to_owned()))
         };
     }
     // Addresses have a colon, and names of scenes have none.
@@ -229,7 +229,7 @@ fn source(text: &str) -> Result<Source, String> {
         format!("; a scene, built in or a file, is opened with `--scene {text}`")
     };
     let no_file = |complaint| format!("there is no such file; for a daemon, {complaint}{scene}");
-    address(text).map(Source::Daemon).map_err(no_file)
+    address(text).map(Target::Daemon).map_err(no_file)
 }
 
 fn address(text: &str) -> Result<String, String> {
@@ -252,11 +252,10 @@ fn address_or_link(text: &str) -> Result<String, String> {
 }
 
 /// A filter whose grammar is right; whether its names are is for the daemon to say.
-fn filter(text: &str) -> Result<String, String> {
-    match Filter::parse(text) {
-        Ok(_) => Ok(text.to_owned()),
-        Err(error) => Err(format!("\n{}", error.pointed(text))),
-    }
+fn filter(text: &str) -> Result<FilterText, String> {
+    let filter = FilterText::read(text);
+    let complaint = filter.error().map(|error| format!("\n{}", error.pointed(text)));
+    complaint.map_or(Ok(filter), Err)
 }
 
 /// One of the commands that steer.
@@ -310,7 +309,7 @@ mod tests {
         let cli = parse("viewer-client watch [::1]:50061 --json --count 3 --filter edges>3")
             .expect("watch");
         assert!(
-            matches!(cli.action, Some(Action::Watch(w)) if w.json && w.count == Some(3) && w.filter.as_deref() == Some("edges>3")),
+            matches!(cli.action, Some(Action::Watch(w)) if w.json && w.count == Some(3) && w.filter == Some(FilterText::read("edges>3"))),
             "w"
         );
     }
@@ -333,7 +332,7 @@ mod tests {
             assert!(said.contains(part) && !said.contains(other), "`{text}`: {said}");
         }
         let link = source("lvis://127.0.0.1:5#camera%20frame");
-        assert!(matches!(link, Ok(Source::Daemon(_))), "{link:?}");
+        assert!(matches!(link, Ok(Target::Daemon(_))), "{link:?}");
     }
 
     #[test]

@@ -7,21 +7,21 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
 
 use egui::{Color32, ColorImage};
+use host::file::Place;
 
-use crate::habits::Habits;
-use crate::imaging::background::{Errand, Outcome};
-use crate::imaging::view::Darkroom;
+use super::background::{BackgroundTasks, Outcome, TaskResult};
+use super::preferences::Preferences;
+use crate::imaging::saved_text;
 use crate::source::connection::{Link, Peer};
-use crate::source::status::Status;
 
 /// Makes connections that wake the window.
 pub type Connect = Box<dyn Fn(Peer) -> io::Result<Link>>;
 
 /// What is asked of the desktop, and what it remembers.
 #[derive(Default)]
-pub struct Desk {
+pub struct Desktop {
     /// What the viewer remembers from one day to the next.
-    pub habits: Habits,
+    pub preferences: Preferences,
     /// How to connect elsewhere; absent without a window.
     pub connect: Option<Connect>,
     /// HOST:PORT of the daemon inside this program, if there is one.
@@ -33,13 +33,13 @@ pub struct Desk {
     awaited: Option<(Receiver<Arc<ColorImage>>, PathBuf)>,
 }
 
-impl fmt::Debug for Desk {
+impl fmt::Debug for Desktop {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Desk").field("habits", &self.habits).finish_non_exhaustive()
+        f.debug_struct("Desktop").field("preferences", &self.preferences).finish_non_exhaustive()
     }
 }
 
-impl Desk {
+impl Desktop {
     /// Of a program with a daemon inside at `home`, HOST:PORT, or of one without.
     pub fn new(home: Option<String>) -> Self {
         Self { home, ..Self::default() }
@@ -55,8 +55,13 @@ impl Desk {
         self.wanted = Some(PathBuf::from(file));
     }
 
-    /// Does what was asked for; once a frame.
-    pub fn work(&mut self, ctx: &egui::Context, darkroom: &mut Darkroom, status: &mut Status) {
+    /// True while something that was asked for is still to be done.
+    pub fn is_waiting(&self) -> bool {
+        self.copied.is_some() || self.wanted.is_some() || self.awaited.is_some()
+    }
+
+    /// Does what was asked for; once a frame. The answer tells why something cannot begin.
+    pub fn work(&mut self, ctx: &egui::Context, tasks: &mut BackgroundTasks) -> Result<(), String> {
         if let Some(text) = self.copied.take() {
             ctx.copy_text(text);
         }
@@ -71,14 +76,9 @@ impl Desk {
             self.awaited = Some((receiver, file));
         }
         let arrived = self.awaited.as_ref().and_then(|(receiver, _)| receiver.try_recv().ok());
-        let Some((image, (_, file))) =
-            arrived.and_then(|image| Some((image, self.awaited.take()?)))
-        else {
-            return;
-        };
-        let started = darkroom.run(move || write(&image, &file));
-        if let Err(problem) = started {
-            status.say(Err(problem));
+        match arrived.and_then(|image| Some((image, self.awaited.take()?))) {
+            Some((image, (_, file))) => tasks.start(move || write(&image, &file)),
+            None => Ok(()),
         }
     }
 }
@@ -88,7 +88,10 @@ fn write(image: &ColorImage, file: &std::path::Path) -> Outcome {
     let bytes: Vec<u8> = image.pixels.iter().flat_map(Color32::to_array).collect();
     let png = image::RgbaImage::from_raw(width, height, bytes)
         .ok_or_else(|| "The window has an odd size.".to_owned())?;
-    png.save_with_format(file, image::ImageFormat::Png)
-        .map(|()| Errand::saved(file))
-        .map_err(|error| format!("{} cannot be written: {error}", file.display()))
+    let write = || -> anyhow::Result<()> {
+        Place::find(file)?.write(|output| Ok(png.write_to(output, image::ImageFormat::Png)?))
+    };
+    write()
+        .map(|()| TaskResult::Done(saved_text(file)))
+        .map_err(|error| format!("The picture of the window cannot be saved: {error:#}"))
 }

@@ -6,12 +6,11 @@ use std::time::Duration;
 use anyhow::Context as _;
 
 use crate::app::Viewer;
-use crate::app::cli::{Action, Cli, Source, ViewArgs};
-use crate::app::headless::Wait;
+use crate::app::cli::{Action, Cli, Target, ViewArgs};
+use crate::app::headless::{Job, Wait};
 use crate::app::{bench, headless, script, share, watch, window};
 use crate::source::connection::Peer;
-use crate::source::status::Status;
-use crate::source::{dump, embedded};
+use crate::source::{Source, dump, embedded, file};
 
 /// A picture is taken after this long when nothing else is asked for.
 const DEFAULT_WAIT: Duration = Duration::from_secs(5);
@@ -27,8 +26,8 @@ pub fn run(cli: Cli) -> anyhow::Result<()> {
 
 fn view(args: &ViewArgs) -> anyhow::Result<()> {
     let text = match &args.source {
-        Some(Source::Daemon(text)) => Some(text.as_str()),
-        Some(Source::File(_)) | None => None,
+        Some(Target::Daemon(text)) => Some(text.as_str()),
+        Some(Target::File(_)) | None => None,
     };
     let link = text.filter(|text| text.starts_with(share::SCHEME));
     let shared = link.map(share::read).transpose()?;
@@ -50,36 +49,31 @@ fn view(args: &ViewArgs) -> anyhow::Result<()> {
             (Some(Peer::open(daemon.address().to_string())), Some(daemon))
         }
     };
-    let mut viewer = if let Some(Source::File(file)) = &args.source {
+    let viewer = if let Some(Target::File(file)) = &args.source {
         open(file, args.surfaces.as_deref())?
     } else {
         let address = peer.as_ref().map(|peer| peer.address.clone()).unwrap_or_default();
-        Viewer::new(Status::new(address, daemon.is_some()))
+        Viewer::new(Source::daemon(address, daemon.is_some()))
     };
     if let Some(file) = &args.screenshot_to {
         let wait = match (args.wait_paths, args.wait) {
             (Some(paths), _) => Wait::Paths(paths),
             (None, time) => Wait::Time(time.unwrap_or(DEFAULT_WAIT)),
         };
-        viewer.run_script(commands);
-        headless::run(viewer, peer, args.size, wait, file)
+        headless::run(viewer, peer, Job { size: args.size, wait, file, commands })
     } else {
         window::run(viewer, peer, commands).context("the viewer ended")
     }
 }
 
 /// A viewer of a file of paths, with the surfaces of a scene where one is named.
-fn open(file: &Path, surfaces: Option<&str>) -> anyhow::Result<Viewer> {
-    let read = dump::read(file)?;
+fn open(path: &Path, surfaces: Option<&str>) -> anyhow::Result<Viewer> {
+    let read = dump::read(path)?;
     let scene = surfaces.map(embedded::surfaces).transpose()?;
     let stage = dump::Stage::new(read, scene);
     // The window shows them, too, but nobody may look at it.
     for warning in &stage.warnings {
-        tracing::warn!("{}: {warning}", file.display());
+        tracing::warn!("{}: {warning}", path.display());
     }
-    let name =
-        file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    let mut viewer = Viewer::new(Status::new(name.clone(), false));
-    viewer.open_dump(&name, stage);
-    Ok(viewer)
+    Ok(Viewer::new(Source::file(&file::name_of(path), stage)))
 }

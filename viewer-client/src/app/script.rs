@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::command::{Command, CommandError};
+use crate::command::Command;
+use crate::value::CommandError;
 
 /// No script is larger.
 const LARGEST: u64 = 1 << 20;
@@ -55,7 +56,7 @@ fn parse(text: &str) -> Result<Vec<Command>, (usize, CommandError)> {
 
 /// The letters of a text that stand in no double quotes, with their places. A quote that is never
 /// closed is a letter as any other; `\"` does not close one.
-pub(super) fn outside_quotes(text: &str) -> impl Iterator<Item = (usize, char)> {
+fn outside_quotes(text: &str) -> impl Iterator<Item = (usize, char)> {
     let mut rest = 0..text.len();
     std::iter::from_fn(move || {
         loop {

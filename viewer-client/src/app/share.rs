@@ -7,14 +7,11 @@
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 use thiserror::Error;
 
-use crate::app::script::outside_quotes;
 use crate::camera::ViewCamera;
-use crate::command::{
-    CameraCommand, CloudCommand, Command, CommandError, FilterCommand, ImageCommand, PathCommand,
-    SceneCommand, Switch,
-};
+use crate::command::{CameraCommand, Command, FilterCommand, ImageCommand, PathCommand, Trait};
 use crate::settings::Settings;
 use crate::source::selection::Selection;
+use crate::value::{CommandError, ShownPath, Switch};
 
 /// How links begin.
 pub const SCHEME: &str = "lvis://";
@@ -60,31 +57,23 @@ pub fn link(
     selection: Option<&Selection>,
 ) -> String {
     let commands = view(camera, settings, selection);
-    let texts: Vec<String> = commands.iter().map(ToString::to_string).collect();
-    format!("{SCHEME}{address}#{}", utf8_percent_encode(&texts.join(";"), PLAIN))
+    // Each by itself: names may hold what divides commands.
+    let encode = |command: &Command| utf8_percent_encode(&command.to_string(), PLAIN).to_string();
+    let texts: Vec<String> = commands.iter().map(encode).collect();
+    format!("{SCHEME}{address}#{}", texts.join(";"))
 }
 
 /// The commands that restore what is seen now.
 fn view(camera: &ViewCamera, settings: &Settings, selection: Option<&Selection>) -> Vec<Command> {
-    let Settings { cloud, scene, filter, image, .. } = settings;
+    let Settings { filter, .. } = settings;
     let mut commands = vec![
         Command::Camera(CameraCommand::Place(camera.place())),
         Command::Camera(CameraCommand::Through(Switch::to(camera.is_through()))),
-        Command::Cloud(CloudCommand::Color(cloud.color)),
-        Command::Cloud(CloudCommand::Marks(cloud.marks)),
-        Command::Scene(SceneCommand::Shading(scene.shading)),
-        Command::Scene(SceneCommand::Opacity(scene.opacity)),
-        Command::Scene(SceneCommand::Clip(scene.clip)),
-        Command::Scene(SceneCommand::Cut(scene.cut)),
-        Command::Image(ImageCommand::Channel(image.channel)),
-        Command::Image(ImageCommand::Tone(image.tone)),
     ];
-    if !image.layer.compares() {
-        commands.push(Command::Image(ImageCommand::Show(image.layer)));
-    }
-    if image.chosen {
-        commands.push(Command::Image(ImageCommand::Exposure(image.exposure)));
-    }
+    // The image that others are compared with is a file of the user's.
+    let can_see = |command: &Command| !matches!(command, Command::Image(ImageCommand::Show(layer)) if layer.compares());
+    let looks = settings.commands().into_iter();
+    commands.extend(looks.filter(|command| command.form().is(Trait::Linked) && can_see(command)));
     let mut wanted = vec![FilterCommand::Clear];
     if filter.kept().iter().any(|kept| kept.on) && !filter.is_off() {
         // Names are the user's own; what they stand for is not.
@@ -100,7 +89,7 @@ fn view(camera: &ViewCamera, settings: &Settings, selection: Option<&Selection>)
     commands.extend(wanted.into_iter().map(Command::Filter));
     let shown = selection.map(|selection| {
         let Selection { header, vertices, .. } = selection;
-        PathCommand::Show(Box::new(*header), vertices.clone())
+        PathCommand::Show(ShownPath { header: *header, vertices: vertices.clone() })
     });
     // The vertex that is looked at is where the camera is already.
     commands.extend(shown.map(Command::Path));
@@ -118,47 +107,18 @@ pub fn read(link: &str) -> Result<Shared, LinkError> {
     if address.is_empty() {
         return Err(LinkError::NoLink);
     }
-    let text = percent_decode_str(encoded).decode_utf8()?;
-    let parts = parts(&text).into_iter().map(str::trim).filter(|part| !part.is_empty());
+    let parts = encoded.split(';').filter(|part| !part.is_empty());
     let commands = parts.map(|part| {
-        let problem = |error| LinkError::BadCommand(part.to_owned(), error);
+        let part = percent_decode_str(part).decode_utf8()?;
+        let problem = |error| LinkError::BadCommand(part.clone().into_owned(), error);
         let command: Command = part.parse().map_err(problem)?;
-        if only_looks(&command) { Ok(command) } else { Err(LinkError::Forbidden(part.to_owned())) }
+        if command.form().is(Trait::Linked) {
+            Ok(command)
+        } else {
+            Err(LinkError::Forbidden(part.into_owned()))
+        }
     });
     Ok(Shared { address, commands: commands.collect::<Result<_, LinkError>>()? })
-}
-
-/// The commands of a link: a semicolon ends one, except within quotes.
-fn parts(text: &str) -> Vec<&str> {
-    let ends = outside_quotes(text).filter(|(_, letter)| *letter == ';').map(|(i, _)| i);
-    let mut parts = Vec::new();
-    let mut start = 0;
-    for end in ends.chain([text.len()]) {
-        parts.push(&text[start..end]);
-        start = end + 1;
-    }
-    parts
-}
-
-/// True for commands that a stranger may give.
-fn only_looks(command: &Command) -> bool {
-    match command {
-        Command::Camera(_) | Command::Scene(_) | Command::Filter(_) => true,
-        Command::Cloud(command) => {
-            matches!(command, CloudCommand::Color(_) | CloudCommand::Marks(_))
-        }
-        Command::Path(command) => matches!(command, PathCommand::Show(..)),
-        Command::Image(command) => matches!(
-            command,
-            ImageCommand::Exposure(_)
-                | ImageCommand::Tone(_)
-                | ImageCommand::Channel(_)
-                | ImageCommand::Show(_)
-                | ImageCommand::Zoom(_)
-                | ImageCommand::Look(_)
-        ),
-        _ => false,
-    }
 }
 
 #[cfg(test)]
@@ -166,13 +126,12 @@ mod tests {
     use common::FilterText;
 
     use super::*;
-    use crate::command::{Layer, Sphere};
+    use crate::value::{Layer, Sphere};
 
     #[test]
     fn a_link_restores_the_view() {
         let mut settings = Settings::default();
-        let text = "any on material \"a;b 100%\" and any on material \"O'Brien \\\"#1\\\";стекло\" \
-                    and film in rect(0.25, 0, 1, 0.5)";
+        let text = r#"any on material "a; b 100% #1 \"стекло\"" and film in rect(0.25, 0, 1, 0.5)"#;
         settings.filter.apply(&FilterCommand::Set(FilterText::read(text)));
         settings.image.layer = Layer::Dwell;
         settings.scene.opacity = 0.25;
@@ -194,21 +153,17 @@ mod tests {
         for command in shared.commands {
             match command {
                 Command::Camera(command) => other.apply(command),
-                Command::Cloud(command) => restored.cloud.apply(command),
-                Command::Scene(command) => restored.scene.apply(command),
-                Command::Image(command) => restored.image.apply(&command),
-                Command::Filter(command) => restored.filter.apply(&command),
-                Command::Path(PathCommand::Show(header, vertices)) => {
-                    selected = Some(Selection::new(*header, vertices));
+                Command::Path(PathCommand::Show(path)) => {
+                    selected = Some(Selection::new(path.header, path.vertices));
                 }
-                other => panic!("{other}"),
+                command => restored.apply(&command),
             }
         }
         assert_eq!(other, camera, "the eye, to the last bit");
         assert_eq!(restored, settings, "what it sees");
         assert_eq!(selected, Some(selection), "and the path that is selected, to the last bit");
         settings.filter.apply(&FilterCommand::Keep("mine".to_owned()));
-        settings.filter.apply(&FilterCommand::Use("mine".to_owned(), Switch::On));
+        settings.filter.apply(&FilterCommand::Use(Switch::On, "mine".to_owned()));
         let shared = read(&link("a:1", &camera, &settings, None)).expect("our own link");
         let wanted = Command::Filter(FilterCommand::Set(settings.filter.whole().clone()));
         assert!(shared.commands.contains(&wanted), "kept filters travel as text");
@@ -223,6 +178,8 @@ mod tests {
             "lvis://a:1#quit",
             "lvis://a:1#image%20save%20x.exr",
             "lvis://a:1#chains%20pause",
+            "lvis://a:1#filter%20forget%20mine",
+            "lvis://a:1#cloud%20budget%2065536",
             "lvis://a:1#nonsense",
         ] {
             assert!(read(text).is_err(), "`{text}` was followed");

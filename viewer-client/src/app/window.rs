@@ -2,23 +2,29 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
+use std::{process, thread};
 
 use anyhow::{Context as _, anyhow};
 use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use host::Quiet;
+use host::signal::Endings;
+use tokio::runtime::Runtime;
 
+use super::preferences::{Keeper, Preferences};
 use crate::app::Viewer;
 use crate::app::desktop::Connect;
 use crate::app::pace::{CALM, FRAME, Pace};
 use crate::command::Command;
 use crate::draw::gpu::Quality;
-use crate::habits::{Habits, Keeper};
 use crate::source::connection::{Haste, Link, Peer, Waker};
 
 /// The window's first size in points.
 const SIZE: [f32; 2] = [1440.0, 860.0];
 /// The smallest size at which all panels are legible.
 const SMALLEST: [f32; 2] = [900.0, 560.0];
+/// A window that was told to close by a signal has this long for that.
+const FAREWELL: Duration = Duration::from_secs(3);
 
 /// How to reach a graphics card: with all that its driver allows.
 pub(crate) fn graphics_setup() -> WgpuSetupCreateNew {
@@ -48,11 +54,16 @@ pub fn run(viewer: Viewer, peer: Option<Peer>, commands: Vec<Command>) -> anyhow
         },
         ..eframe::NativeOptions::default()
     };
+    let quiet = Quiet::begin();
     let create = move |cc: &eframe::CreationContext<'_>| {
+        told_by_drivers(&quiet.end());
         let gpu = cc.wgpu_render_state.as_ref().context("no graphics card was found")?;
         Viewer::install(&cc.egui_ctx, gpu, quality(gpu));
+        keep_within(&cc.egui_ctx, gpu);
         let mut viewer = viewer;
         let ctx = cc.egui_ctx.clone();
+        let is_ending = Arc::new(AtomicBool::new(false));
+        end_by_signals(Arc::clone(&is_ending), ctx.clone())?;
         let is_calm = Arc::new(AtomicBool::new(false));
         let calm = Arc::clone(&is_calm);
         let connect: Connect = Box::new(move |peer| {
@@ -66,13 +77,18 @@ pub fn run(viewer: Viewer, peer: Option<Peer>, commands: Vec<Command>) -> anyhow
         if let Some(peer) = peer {
             viewer.set_link(connect(peer)?);
         }
-        let file = Habits::file();
-        let habits = file.as_deref().map(Habits::load).unwrap_or_default();
-        let keeper = file.map(|file| Keeper::new(file, habits.clone()));
-        viewer.adopt(habits, connect);
+        let file = Preferences::file();
+        let (preferences, complaints) = file.as_deref().map(Preferences::load).unwrap_or_default();
+        let keeper = file.map(|file| Keeper::new(file, preferences.clone()));
+        viewer.adopt(preferences, connect);
+        for complaint in complaints {
+            tracing::warn!("{complaint}");
+            viewer.complain(complaint);
+        }
         viewer.run_script(commands);
         let pace = Pace::default();
-        let app: Box<dyn eframe::App> = Box::new(Window { viewer, pace, is_calm, keeper });
+        let app: Box<dyn eframe::App> =
+            Box::new(Window { viewer, pace, is_calm, is_ending, keeper });
         Ok(app)
     };
     eframe::run_native("Lvis", options, Box::new(create)).map_err(|error| {
@@ -81,6 +97,51 @@ pub fn run(viewer: Viewer, peer: Option<Peer>, commands: Vec<Command>) -> anyhow
              OUT.png"
         )
     })
+}
+
+/// What graphics drivers had to say of displays that they passed over.
+pub(crate) fn told_by_drivers(text: &str) {
+    if !text.is_empty() {
+        tracing::debug!("said while the graphics card was looked for:\n{text}");
+    }
+}
+
+/// No window is larger than what the graphics card can draw.
+fn keep_within(ctx: &egui::Context, gpu: &egui_wgpu::RenderState) {
+    let most = gpu.device.limits().max_texture_dimension_2d as f32 / ctx.pixels_per_point();
+    ctx.send_viewport_cmd(egui::ViewportCommand::MaxInnerSize(egui::Vec2::splat(most)));
+}
+
+/// Has signals close the window, so that what is remembered is saved. The second one ends the program
+/// at once, and so does a window that does not close.
+fn end_by_signals(is_ending: Arc<AtomicBool>, ctx: egui::Context) -> anyhow::Result<()> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+    let mut endings = {
+        let _context = runtime.enter();
+        Endings::listen()?
+    };
+    let wait = move || {
+        let first = runtime.block_on(endings.next());
+        tracing::info!("closing: {}", first.name());
+        is_ending.store(true, Ordering::Relaxed);
+        ctx.request_repaint();
+        patiently(&runtime, &mut endings);
+        #[expect(clippy::exit, reason = "a window that does not close must not keep the program")]
+        process::exit(i32::from(first.exit_code()));
+    };
+    // It lasts as long as the program does.
+    drop(thread::Builder::new().name("signals".to_owned()).spawn(wait)?);
+    Ok(())
+}
+
+/// Until the next signal, or until there was time enough to end.
+fn patiently(runtime: &Runtime, endings: &mut Endings) {
+    runtime.block_on(async {
+        tokio::select! {
+            _ = endings.next() => {}
+            () = tokio::time::sleep(FAREWELL) => {}
+        }
+    });
 }
 
 /// Programs that stand in for a graphics card spend most of their time on samples.
@@ -102,6 +163,8 @@ struct Window {
     pace: Pace,
     /// The cloud is frozen: what comes all the time can wait. The connection's thread reads it.
     is_calm: Arc<AtomicBool>,
+    /// A signal has asked the program to end.
+    is_ending: Arc<AtomicBool>,
     /// Keeps what the user is used to; absent where there is no folder for settings.
     keeper: Option<Keeper>,
 }
@@ -124,19 +187,22 @@ impl eframe::App for Window {
             ui.ctx().request_repaint();
         }
         self.viewer.ui(ui);
-        if let Some(keeper) = &mut self.keeper
-            && let Some(wait) = keeper.note(self.viewer.habits(), Instant::now())
-        {
-            ui.ctx().request_repaint_after(wait);
+        if let Some(keeper) = &mut self.keeper {
+            if let Some(wait) = keeper.update(self.viewer.preferences(), Instant::now()) {
+                ui.ctx().request_repaint_after(wait);
+            }
+            if let Some(problem) = keeper.problem() {
+                self.viewer.complain(problem);
+            }
         }
-        if self.viewer.is_closing() {
+        if self.viewer.is_closing() || self.is_ending.load(Ordering::Relaxed) {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
         }
     }
 
     fn on_exit(&mut self) {
         if let Some(keeper) = &mut self.keeper {
-            keeper.finish(self.viewer.habits());
+            keeper.finish(self.viewer.preferences());
         }
     }
 }

@@ -9,8 +9,9 @@ pub use lens::{Gate, Lens, NEAR};
 use common::Camera;
 use glam::Vec3;
 
-use crate::command::{CameraCommand, Place, Side};
+use crate::command::CameraCommand;
 use crate::value::Bounds;
+use crate::value::{Side, Viewpoint};
 
 /// Half the vertical field of view of the user's eye, as a tangent: 45 degrees in all.
 const TAN_Y: f32 = 0.414_213_56;
@@ -88,7 +89,7 @@ impl ViewCamera {
         match command {
             CameraCommand::Orbit(right, up) => self.orbit(right, up),
             CameraCommand::Pan(right, up) => self.pan(right, up),
-            CameraCommand::Zoom { factor, at } => self.zoom(factor, at),
+            CameraCommand::Zoom(factor, at) => self.zoom(factor, at),
             CameraCommand::Look(right, up) => self.look(right, up),
             CameraCommand::Move(step) => self.step(step),
             CameraCommand::Fly(switch) => switch.apply(&mut self.flying),
@@ -115,9 +116,9 @@ impl ViewCamera {
     }
 
     /// Where the eye is when it does not look through the render camera.
-    pub fn place(&self) -> Place {
+    pub fn place(&self) -> Viewpoint {
         let &Self { pivot, distance, yaw, pitch, .. } = self;
-        Place { pivot: pivot.to_array(), distance, yaw, pitch }
+        Viewpoint { pivot: pivot.to_array(), distance, yaw, pitch }
     }
 
     /// Takes a new scene, and starts behind the render camera's shoulder.

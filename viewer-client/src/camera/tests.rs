@@ -4,7 +4,7 @@ use common::CameraPose;
 use glam::{DVec3, Vec2};
 
 use super::*;
-use crate::command::Switch;
+use crate::value::Switch;
 
 fn render_camera() -> Camera {
     let pose = CameraPose {
@@ -81,11 +81,11 @@ fn zooming_leaves_the_point_under_the_cursor() {
     let half_height = 0.5 * view.height_at_pivot();
     let point = view.pivot + half_height * (0.6 * view.right() - 0.4 * up);
     let before = project(&view, point);
-    view.apply(CameraCommand::Zoom { factor: 1.7, at: [0.6, -0.4] });
+    view.apply(CameraCommand::Zoom(1.7, [0.6, -0.4]));
     assert!(near(project(&view, point), before), "the point moved");
     let distance = view.distance;
-    view.apply(CameraCommand::Zoom { factor: 1000.0, at: [0.0, 0.0] });
-    view.apply(CameraCommand::Zoom { factor: 1000.0, at: [0.0, 0.0] });
+    view.apply(CameraCommand::Zoom(1000.0, [0.0, 0.0]));
+    view.apply(CameraCommand::Zoom(1000.0, [0.0, 0.0]));
     assert!(view.distance > 0.0 && view.distance < distance, "closer, but never at the pivot");
 }
 

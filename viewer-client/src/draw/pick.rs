@@ -7,30 +7,10 @@ use crate::camera::{Lens, NEAR};
 use crate::settings::SceneSettings;
 use crate::source::selection::Selection;
 use crate::source::store::Store;
-use crate::value::Bounds;
+use crate::value::{Bounds, Pointer};
 
 /// Paths that one click finds at most; more than anybody clicks through.
 const MOST_HITS: usize = 64;
-
-/// Where the user points, and how far off a path may lie.
-///
-/// All three are tangents of angles from the view direction, so that neither the size nor the shape
-/// of the window matters.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Aim {
-    /// To the right and upwards.
-    pub at: [f32; 2],
-    /// How far off, in any direction.
-    pub reach: f32,
-}
-
-impl Aim {
-    /// True when the user points at the same thing, as far as a hand can.
-    pub fn is_near(self, other: Self) -> bool {
-        let off = Vec2::from(self.at).distance(Vec2::from(other.at));
-        off <= 0.5 * self.reach.max(other.reach)
-    }
-}
 
 /// A path under the cursor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,11 +41,11 @@ pub struct Pickable {
 pub fn paths_at(
     store: &Store,
     lens: &Lens,
-    aim: Aim,
+    pointer: Pointer,
     of: Pickable,
     surface: Option<f32>,
 ) -> Vec<Hit> {
-    let beam = Beam::new(lens, aim, of.clip);
+    let beam = Beam::new(lens, pointer, of.clip);
     let mut hits = Vec::new();
     let mut left = of.newest;
     let mut codes = Vec::new();
@@ -105,10 +85,10 @@ struct Beam<'a> {
 }
 
 impl<'a> Beam<'a> {
-    fn new(lens: &'a Lens, aim: Aim, clip: Vec4) -> Self {
-        let [x, y] = aim.at;
-        let sides = [x - aim.reach, x + aim.reach, y - aim.reach, y + aim.reach];
-        Self { lens, at: Vec2::new(x, y), reach: aim.reach, clip, sides }
+    fn new(lens: &'a Lens, pointer: Pointer, clip: Vec4) -> Self {
+        let [x, y] = pointer.at;
+        let sides = [x - pointer.reach, x + pointer.reach, y - pointer.reach, y + pointer.reach];
+        Self { lens, at: Vec2::new(x, y), reach: pointer.reach, clip, sides }
     }
 
     /// The sides that a point lies outside of, one bit each: a segment whose ends share one cannot
@@ -227,14 +207,14 @@ pub struct Sight<'a> {
 
 impl Sight<'_> {
     /// The paths under the cursor, in the order in which clicks go through them.
-    pub fn paths(&self, aim: Aim) -> Vec<Selection> {
+    pub fn paths(&self, pointer: Pointer) -> Vec<Selection> {
         let clip = self.scene.clip_plane(self.bounds);
         let mesh = self.mesh.filter(|_| self.scene.covers());
         let surface = mesh
-            .and_then(|mesh| surface_at(mesh, self.lens, aim.at, !self.scene.cutaway, clip))
+            .and_then(|mesh| surface_at(mesh, self.lens, pointer.at, !self.scene.cutaway, clip))
             .map(|(depth, _)| depth);
         let pickable = Pickable { newest: self.newest, clip };
-        let hits = paths_at(self.store, self.lens, aim, pickable, surface);
+        let hits = paths_at(self.store, self.lens, pointer, pickable, surface);
         let found = hits.iter().filter_map(|hit| {
             let page = self.store.page(hit.page)?;
             let path = page.paths().get(hit.index)?;
@@ -282,8 +262,8 @@ mod tests {
     fn a_click_finds_what_is_near_it_and_nothing_else() {
         let store = store();
         let at = |x: f32, y: f32, reach: f32| {
-            let aim = Aim { at: [x, y], reach };
-            let hits = paths_at(&store, &lens(), aim, ALL, None);
+            let pointer = Pointer { at: [x, y], reach };
+            let hits = paths_at(&store, &lens(), pointer, ALL, None);
             hits.iter().map(|h| (h.index, h.segment)).collect::<Vec<_>>()
         };
         // The paths lie at 0 / 2000, 30 / 1000 and 300 / 1500 above the middle.
@@ -296,9 +276,9 @@ mod tests {
 
     #[test]
     fn paths_behind_a_surface_come_last() {
-        let aim = Aim { at: [0.01, 0.012], reach: 0.02 };
+        let pointer = Pointer { at: [0.01, 0.012], reach: 0.02 };
         let order = |surface| {
-            let hits = paths_at(&store(), &lens(), aim, ALL, surface);
+            let hits = paths_at(&store(), &lens(), pointer, ALL, surface);
             hits.iter().map(|h| h.index).collect::<Vec<_>>()
         };
         assert_eq!(order(Some(1200.0)), [1, 0], "the farther path is hidden");
@@ -307,15 +287,15 @@ mod tests {
 
     #[test]
     fn only_what_is_drawn_is_found() {
-        let aim = Aim { at: [0.01, 0.012], reach: 0.02 };
+        let pointer = Pointer { at: [0.01, 0.012], reach: 0.02 };
         let newest = Pickable { newest: 2, ..ALL };
         assert_eq!(
-            paths_at(&store(), &lens(), aim, newest, None).len(),
+            paths_at(&store(), &lens(), pointer, newest, None).len(),
             1,
             "the oldest is not drawn"
         );
         let front = Pickable { clip: Vec4::new(0.0, 0.0, 1.0, 0.0), ..ALL };
-        let hits = paths_at(&store(), &lens(), aim, front, None);
+        let hits = paths_at(&store(), &lens(), pointer, front, None);
         assert_eq!(hits.iter().map(|h| h.index).collect::<Vec<_>>(), [1], "one is cut away");
     }
 

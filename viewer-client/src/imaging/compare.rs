@@ -1,6 +1,6 @@
 //! How far the image is from a reference.
 
-use common::{Floor, Rgb, mean_of_smallest, mean_ratio, relative_errors};
+use common::{Floor, Rgb, known, mean_of_smallest, mean_ratio, relative_errors};
 
 use crate::imaging::film::Film;
 
@@ -35,8 +35,13 @@ impl Reference {
         film.size() == [self.width, self.height]
     }
 
+    /// Pixels for which it has no value.
+    pub fn missing(&self) -> usize {
+        self.pixels.iter().filter(|pixel| !pixel.is_finite()).count()
+    }
+
     /// Relative squared error of each pixel of `film`: the mean over the channels of
-    /// `(x - r)^2 / (r^2 + 0.01)`. Empty when the sizes differ.
+    /// `(x - r)^2 / (r^2 + 0.01)`. NaN where the reference has no value; empty when the sizes differ.
     pub fn errors(&self, film: &Film) -> Vec<f64> {
         if self.fits(film) {
             relative_errors(&film.radiance(), &self.pixels, FLOOR)
@@ -49,7 +54,7 @@ impl Reference {
 /// How far an image is from a reference, in numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Comparison {
-    /// Mean of [`Reference::errors`].
+    /// Mean of [`Reference::errors`], where the reference has a value.
     pub relative_mse: f64,
     /// The same without the worst pixel in a hundred.
     pub trimmed: f64,
@@ -63,7 +68,7 @@ impl Comparison {
         if !reference.fits(film) {
             return None;
         }
-        let errors = reference.errors(film);
+        let errors = known(reference.errors(film), &reference.pixels);
         Some(Self {
             relative_mse: mean_of_smallest(errors.clone(), 1.0),
             trimmed: mean_of_smallest(errors, TRIMMED),

@@ -5,10 +5,10 @@ use std::borrow::Cow;
 use common::{Diagnostics, Rgb};
 
 use super::{FlipMap, Reference};
-use crate::command::{Channel, Layer, ToneCurve};
 use crate::imaging::film::{Film, encode_srgb};
 use crate::settings::ImageSettings;
 use crate::value::format;
+use crate::value::{Channel, Layer, ToneCurve};
 
 /// Low to high, from dark to light: also in grey, and with any kind of colour vision.
 const SEQUENTIAL: [[u8; 3]; 9] = [
@@ -115,7 +115,7 @@ pub fn develop(sources: Sources<'_>, look: &ImageSettings) -> Option<Vec<u8>> {
         }
         Layer::Difference => {
             let reference = sources.reference.filter(|r| r.fits(film))?;
-            let gain = f64::from(look.exposure.exp2());
+            let gain = f64::from(look.exposure.stops().exp2());
             let place = |(image, reference): (Rgb, &Rgb)| {
                 let difference = gain * (image.luminance() - reference.luminance());
                 ramp_color(Ramp::Diverging, (0.5 + 0.5 * difference) as f32)
@@ -178,7 +178,7 @@ fn map_place(layer: Layer, value: f32) -> f32 {
 pub fn legend(look: &ImageSettings) -> Option<Legend> {
     match look.layer {
         Layer::Image | Layer::Reference if look.tone == ToneCurve::False => {
-            let top = BRIGHTEST / look.exposure.exp2();
+            let top = BRIGHTEST / look.exposure.stops().exp2();
             Some(Legend {
                 title: "luminance, logarithmic".to_owned(),
                 ramp: Ramp::Sequential,
@@ -187,7 +187,7 @@ pub fn legend(look: &ImageSettings) -> Option<Legend> {
         }
         Layer::Image | Layer::Reference => None,
         Layer::Difference => {
-            let end = format::value((-look.exposure).exp2());
+            let end = format::value((-look.exposure.stops()).exp2());
             Some(Legend {
                 title: "darker or brighter than the reference, in luminance".to_owned(),
                 ramp: Ramp::Diverging,
@@ -252,7 +252,7 @@ fn channel(rgb: &[f32], channel: Channel) -> Cow<'_, [f32]> {
 }
 
 fn tone(rgb: &[f32], look: &ImageSettings) -> Vec<u8> {
-    let scale = look.exposure.exp2();
+    let scale = look.exposure.stops().exp2();
     match look.tone {
         ToneCurve::Srgb => rgb.iter().map(|v| encode_srgb(v * scale)).collect(),
         ToneCurve::Gamma => {
@@ -276,6 +276,7 @@ mod tests {
     use common::FilmTile;
 
     use super::*;
+    use crate::value::Exposure;
 
     fn film(value: f32) -> Film {
         let mut film = Film::default();
@@ -299,7 +300,7 @@ mod tests {
 
     #[test]
     fn exposure_counts_in_stops() {
-        let look = ImageSettings { exposure: 2.0, ..ImageSettings::default() };
+        let look = ImageSettings { exposure: Exposure::Chosen(2.0), ..ImageSettings::default() };
         assert_eq!(first(&film(0.25), None, &look), Some([255; 3]), "a quarter becomes white");
         assert_eq!(first(&film(0.25), None, &ImageSettings::default()), Some([137; 3]), "as is");
         let look = ImageSettings { tone: ToneCurve::Gamma, gamma: 2.0, ..look };
@@ -325,12 +326,14 @@ mod tests {
     #[test]
     fn false_colours_follow_luminance_and_exposure() {
         let look = ImageSettings { tone: ToneCurve::False, ..ImageSettings::default() };
-        let at =
-            |value, stops| first(&film(value), None, &ImageSettings { exposure: stops, ..look });
+        let at = |value, stops| {
+            first(&film(value), None, &ImageSettings { exposure: Exposure::Chosen(stops), ..look })
+        };
         assert_eq!(at(10.0, 0.0), Some(SEQUENTIAL[8]), "the brightest");
         assert_eq!(at(0.001, 0.0), Some(SEQUENTIAL[0]), "four decades below");
         assert_eq!(at(2.5, 2.0), at(10.0, 0.0), "two stops are a factor of four");
-        let legend = legend(&ImageSettings { exposure: 1.0, ..look }).expect("colours need one");
+        let legend = legend(&ImageSettings { exposure: Exposure::Chosen(1.0), ..look })
+            .expect("colours need one");
         assert_eq!(legend.ticks.first().map(String::as_str), Some("5.0e-4"), "{legend:?}");
         assert_eq!(legend.ticks.len(), 5, "four decades: {legend:?}");
     }

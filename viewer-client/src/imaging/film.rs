@@ -4,6 +4,8 @@ use std::sync::LazyLock;
 
 use common::{FilmTile, Rgb};
 
+use crate::value::fresh;
+
 /// Larger films are refused: their image would not fit into a texture of common graphics cards.
 const LARGEST_SIDE: u32 = 8192;
 /// Entries of the table from linear light to sRGB.
@@ -41,13 +43,8 @@ impl Film {
             rows.copy_from_slice(&tile.rgb);
         }
         self.steps = tile.steps;
-        self.revision += 1;
+        self.revision = fresh();
         true
-    }
-
-    /// Forgets the image.
-    pub fn clear(&mut self) {
-        *self = Self { revision: self.revision + 1, ..Self::default() };
     }
 
     /// Width and height in pixels; zero before the first tile.
@@ -60,7 +57,7 @@ impl Film {
         self.steps
     }
 
-    /// Grows with every change.
+    /// Another one after every change; no two images have the same.
     pub fn revision(&self) -> u64 {
         self.revision
     }

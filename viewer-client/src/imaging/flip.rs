@@ -10,7 +10,7 @@ use crate::imaging::film::Film;
 pub struct FlipMap {
     /// From 0, none, to 1, row by row from the top.
     pub errors: Vec<f32>,
-    /// Mean over the pixels.
+    /// Mean over the pixels that the reference has a value for.
     pub mean: f64,
     /// Mutations behind the image that was compared.
     pub steps: u64,
@@ -21,8 +21,12 @@ impl FlipMap {
     /// pixel counts as on the screen that the metric's authors assume.
     pub fn of(film: &Film, reference: &Reference) -> Result<Self, String> {
         let [width, height] = film.size();
-        let own = film.rgb().as_chunks::<3>().0.iter().map(|rgb| rgb.map(bounded));
-        let other = reference.pixels.iter().map(|pixel| pixel.to_f32().map(bounded));
+        let is_known: Vec<bool> = reference.pixels.iter().map(|pixel| pixel.is_finite()).collect();
+        // Where the reference has no value, there is no difference to be seen.
+        let shown =
+            |(rgb, known): ([f32; 3], &bool)| if *known { rgb.map(bounded) } else { [0.0; 3] };
+        let own = film.rgb().as_chunks::<3>().0.iter().copied().zip(&is_known).map(shown);
+        let other = reference.pixels.iter().map(|pixel| pixel.to_f32()).zip(&is_known).map(shown);
         let image = |pixels: Vec<f32>| {
             RgbImage::new(width, height, pixels).map_err(|error| error.to_string())
         };
@@ -30,7 +34,9 @@ impl FlipMap {
         let reference = image(other.flatten().collect())?;
         let flipped = hdr_flip(&reference, &test, HdrOptions::default());
         let errors = flipped.map_err(|error| error.to_string())?.error_map.into_pixels();
-        let mean = errors.iter().copied().map(f64::from).sum::<f64>() / errors.len().max(1) as f64;
+        let known = || errors.iter().zip(&is_known).filter(|(_, known)| **known);
+        let sum = known().map(|(error, _)| f64::from(*error)).sum::<f64>();
+        let mean = sum / known().count().max(1) as f64;
         Ok(Self { errors, mean, steps: film.steps() })
     }
 
@@ -87,6 +93,14 @@ mod tests {
         let noisy = noisy.expect("of equal size");
         let (at, beside) = (noisy.errors[5 + 32 * 9], noisy.errors[13 + 32 * 9]);
         assert!(at > 3.0 * beside, "where the noise is: {at}, beside it: {beside}");
+    }
+
+    #[test]
+    fn what_the_reference_does_not_know_counts_for_nothing() {
+        let hole = |i: usize| if i / 32 < 8 { f32::NAN } else { ramp(i) };
+        let map =
+            FlipMap::of(&film(|i| if i / 32 < 8 { 9.0 } else { ramp(i) }, 7), &reference(hole));
+        assert_eq!(map.expect("of equal size").mean, 0.0, "equal elsewhere");
     }
 
     #[test]

@@ -2,74 +2,78 @@
 //!
 //! Where a key of today is not among them, it keeps its meaning.
 
-use common::ExplorerCommand;
 use egui::Key;
 
-use super::{Binding, Group, after, bind, explore, handles, plain, play_or_pause, seed};
-use crate::command::{
-    CameraCommand, CloudCommand, Command, FilterCommand, SceneCommand, Shading, Switch,
-};
+use super::Group::{Camera, Explorer, Paths, View};
+use super::{Binding, find, handles, moved, plain, play_or_pause, say, seed, shading};
+use crate::command::{CloudSettings, Command, Setting};
+use crate::world::World;
 
-/// How far a key press moves the eye, in sizes of the scene.
-const STEP: f32 = 0.02;
 /// Paths that a key press adds or takes away.
-const TEN: u32 = 10;
-/// The most paths that a limit may let through.
-const MOST: u32 = 10_000_000;
+const TEN: f64 = 10.0;
 
-/// The bindings that differ from today's.
+/// The bindings that differ from today's. The camera moves by a fiftieth of the scene.
 pub(super) const BINDINGS: &[Binding] = &[
-    bind(plain(Key::F), Group::Camera, "free camera, or round the scene again", |_| {
-        Command::Camera(CameraCommand::Fly(Switch::Toggle))
-    }),
-    bind(plain(Key::ArrowUp), Group::Camera, "forward", |_| step([STEP, 0.0, 0.0])),
-    bind(plain(Key::ArrowDown), Group::Camera, "back", |_| step([-STEP, 0.0, 0.0])),
-    bind(plain(Key::ArrowLeft), Group::Camera, "to the left", |_| step([0.0, -STEP, 0.0])),
-    bind(plain(Key::ArrowRight), Group::Camera, "to the right", |_| step([0.0, STEP, 0.0])),
-    bind(plain(Key::W), Group::Camera, "up", |_| step([0.0, 0.0, STEP])),
-    bind(plain(Key::S), Group::Camera, "down", |_| step([0.0, 0.0, -STEP])),
-    bind(plain(Key::Enter), Group::Explorer, "make the selected path the active path", seed),
-    bind(plain(Key::Backspace), Group::Paths, "clear all paths", |_| {
-        Command::Cloud(CloudCommand::Clear)
-    }),
-    bind(plain(Key::Home), Group::Paths, "delete all selectors", |_| {
-        Command::Filter(FilterCommand::DeleteAll)
-    }),
-    bind(plain(Key::A), Group::Paths, "handles of selectors move, or scale", handles),
-    bind(plain(Key::F1), Group::Paths, "let 10 paths less wait (limit)", |w| {
-        Command::Cloud(CloudCommand::Limit(w.settings.cloud.limit.saturating_sub(TEN).max(TEN)))
-    }),
-    bind(plain(Key::F2), Group::Paths, "let 10 paths more wait (limit)", |w| {
-        Command::Cloud(CloudCommand::Limit((w.settings.cloud.limit + TEN).min(MOST)))
-    }),
-    bind(plain(Key::F3), Group::Paths, "draw 10 paths less (draw limit)", |w| {
-        Command::Cloud(CloudCommand::Shown(w.settings.cloud.shown.saturating_sub(TEN)))
-    }),
-    bind(plain(Key::F4), Group::Paths, "draw 10 paths more (draw limit)", |w| {
-        Command::Cloud(CloudCommand::Shown((w.settings.cloud.shown + TEN).min(MOST)))
-    }),
-    bind(plain(Key::F5), Group::Paths, "filter when 10 paths less wait (threshold)", |w| {
-        Command::Cloud(CloudCommand::Threshold(w.settings.cloud.threshold.saturating_sub(TEN)))
-    }),
-    bind(plain(Key::F6), Group::Paths, "filter when 10 paths more wait (threshold)", |w| {
-        Command::Cloud(CloudCommand::Threshold((w.settings.cloud.threshold + TEN).min(MOST)))
-    }),
-    bind(plain(Key::F8), Group::Explorer, "a single step", |_| explore(ExplorerCommand::Step(1))),
-    bind(plain(Key::F9), Group::Explorer, "pause, or go on", play_or_pause),
-    bind(plain(Key::F10), Group::Paths, "let new paths wait, or come", |_| {
-        Command::Cloud(CloudCommand::Freeze(Switch::Toggle))
-    }),
-    bind(plain(Key::F11), Group::Paths, "filter, or show all paths", |_| {
-        Command::Filter(FilterCommand::Enable(Switch::Toggle))
-    }),
-    bind(plain(Key::F12), Group::View, "next shading", |world| {
-        let next = after(&Shading::ALL, world.settings.scene.shading);
-        Command::Scene(SceneCommand::Shading(next))
-    }),
+    say(plain(Key::F), Camera, "camera fly toggle", "free camera, or around the scene again"),
+    say(plain(Key::ArrowUp), Camera, "camera move 0.02 0 0", "forward"),
+    say(plain(Key::ArrowDown), Camera, "camera move -0.02 0 0", "back"),
+    say(plain(Key::ArrowLeft), Camera, "camera move 0 -0.02 0", "to the left"),
+    say(plain(Key::ArrowRight), Camera, "camera move 0 0.02 0", "to the right"),
+    say(plain(Key::W), Camera, "camera move 0 0 0.02", "up"),
+    say(plain(Key::S), Camera, "camera move 0 0 -0.02", "down"),
+    find(plain(Key::Enter), Explorer, seed, "make the selected path the active path"),
+    say(plain(Key::Backspace), Paths, "cloud clear", "clear all paths"),
+    say(plain(Key::Home), Paths, "filter delete-all", "delete all selectors"),
+    find(plain(Key::A), Paths, handles, "handles of selectors move, or scale"),
+    find(
+        plain(Key::F1),
+        Paths,
+        |w| less(w, &CloudSettings::limit()),
+        "let 10 fewer paths wait (limit)",
+    ),
+    find(
+        plain(Key::F2),
+        Paths,
+        |w| more(w, &CloudSettings::limit()),
+        "let 10 more paths wait (limit)",
+    ),
+    find(
+        plain(Key::F3),
+        Paths,
+        |w| less(w, &CloudSettings::shown()),
+        "draw 10 fewer paths (draw limit)",
+    ),
+    find(
+        plain(Key::F4),
+        Paths,
+        |w| more(w, &CloudSettings::shown()),
+        "draw 10 more paths (draw limit)",
+    ),
+    find(
+        plain(Key::F5),
+        Paths,
+        |w| less(w, &CloudSettings::threshold()),
+        "filter when 10 fewer paths wait (threshold)",
+    ),
+    find(
+        plain(Key::F6),
+        Paths,
+        |w| more(w, &CloudSettings::threshold()),
+        "filter when 10 more paths wait (threshold)",
+    ),
+    say(plain(Key::F8), Explorer, "explorer step 1", "a single step"),
+    find(plain(Key::F9), Explorer, play_or_pause, "pause, or go on"),
+    say(plain(Key::F10), Paths, "cloud freeze toggle", "let new paths wait, or come"),
+    say(plain(Key::F11), Paths, "filter enable toggle", "filter, or show all paths"),
+    find(plain(Key::F12), View, shading, "next shading"),
 ];
 
-fn step(step: [f32; 3]) -> Command {
-    Command::Camera(CameraCommand::Move(step))
+fn less(world: &World<'_>, setting: &Setting<CloudSettings, u32>) -> Command {
+    moved(world, setting, |paths| paths - TEN)
+}
+
+fn more(world: &World<'_>, setting: &Setting<CloudSettings, u32>) -> Command {
+    moved(world, setting, |paths| paths + TEN)
 }
 
 /// The mouse, and the keys that need it.
@@ -87,21 +91,4 @@ pub(super) const MOUSE: &[(&str, &str)] = &[
 /// True for keys that are taken though no binding names them: the viewport has them.
 pub(super) fn is_taken(key: Key) -> bool {
     matches!(key, Key::Z | Key::X | Key::C | Key::V)
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::keys::{KeyPreset, bindings};
-
-    #[test]
-    fn no_key_has_two_meanings() {
-        for preset in KeyPreset::ALL {
-            let all = bindings(preset);
-            for (i, binding) in all.iter().enumerate() {
-                let other = all.iter().skip(i + 1).find(|b| b.shortcut == binding.shortcut);
-                assert!(other.is_none(), "{preset}: {} and {other:?}", binding.help);
-            }
-            assert!(all.len() > 30, "{preset}: {} keys", all.len());
-        }
-    }
 }

@@ -2,17 +2,15 @@
 
 mod classic;
 
-use std::fmt;
-
 use common::{ExplorerCommand, MIN_RATE, Order, Pace, Seed, SelectorKind, SkipTo};
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use crate::command::{
-    Blend, CameraCommand, CloudCommand, ColorMode, Command, DeskCommand, Handles, ImageCommand,
-    LayoutCommand, PanelName, PathCommand, PlayCommand, SceneCommand, Shading, Side, Switch,
-    ThemeName, VertexStep,
+    CloudSettings, Command, Form, ImageCommand, ImageSettings, PlayCommand, SceneCommand,
+    SceneSettings, Setting, WindowCommand, WindowSettings,
 };
-use crate::settings::SCALES;
+use crate::settings::Group as Settings;
+use crate::value::{Choice, KeyPreset, MousePreset, Number, Settable, Switch};
 use crate::world::World;
 
 /// A key and its command.
@@ -24,8 +22,33 @@ pub struct Binding {
     pub group: Group,
     /// What it does, for the help sheet.
     pub help: &'static str,
+    action: Action,
+}
+
+/// What a key does.
+#[derive(Clone, Copy, Debug)]
+enum Action {
+    /// Always this command.
+    Say(&'static str),
+    /// What suits the state of affairs.
+    Find(fn(&World<'_>) -> Command),
+}
+
+impl Binding {
     /// What it does in this state of affairs.
-    pub command: fn(&World<'_>) -> Command,
+    pub fn command(&self, world: &World<'_>) -> Command {
+        match self.action {
+            Action::Find(find) => find(world),
+            Action::Say(text) => text.parse().unwrap_or_else(|error| panic!("`{text}`: {error}")),
+        }
+    }
+}
+
+/// The keys that give commands of this form, as they are printed on keyboards.
+pub fn keys_of(form: &Form, world: &World<'_>) -> Vec<String> {
+    let all = bindings(world.settings.window.keys).into_iter();
+    let fitting = all.filter(|binding| form.is_of(&binding.command(world)));
+    fitting.map(|binding| key_name(binding.shortcut)).collect()
 }
 
 /// A part of the help sheet.
@@ -56,91 +79,40 @@ impl Group {
     }
 }
 
-/// Which keys there are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum KeyPreset {
-    /// Those of today's programs.
-    #[default]
-    Today,
-    /// Those of the Lvis of 2014.
-    Classic,
-}
-
-impl KeyPreset {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::Today, Self::Classic];
-
-    /// Keys that make a spherical selector under the cursor.
-    pub fn selectors(self) -> [(Key, SelectorKind); 4] {
-        use SelectorKind::{All, Any, End, Start};
-        match self {
-            Self::Today => [(Key::F2, Start), (Key::F3, End), (Key::F4, Any), (Key::F5, All)],
-            Self::Classic => [(Key::Z, Start), (Key::X, End), (Key::V, Any), (Key::C, All)],
-        }
-    }
-
-    /// The mouse, for the help sheet.
-    pub fn mouse(self) -> &'static [(&'static str, &'static str)] {
-        match self {
-            Self::Today => MOUSE,
-            Self::Classic => classic::MOUSE,
-        }
+/// Keys that make a spherical selector under the cursor.
+pub fn selectors(preset: KeyPreset) -> [(Key, SelectorKind); 4] {
+    use SelectorKind::{All, Any, End, Start};
+    match preset {
+        KeyPreset::Today => [(Key::F2, Start), (Key::F3, End), (Key::F4, Any), (Key::F5, All)],
+        KeyPreset::Classic => [(Key::Z, Start), (Key::X, End), (Key::V, Any), (Key::C, All)],
     }
 }
 
-impl fmt::Display for KeyPreset {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Today => "today",
-            Self::Classic => "classic",
-        })
+/// The mouse, for the help sheet.
+pub fn mouse(preset: KeyPreset) -> &'static [(&'static str, &'static str)] {
+    match preset {
+        KeyPreset::Today => MOUSE,
+        KeyPreset::Classic => classic::MOUSE,
     }
 }
 
-/// What dragging with the mouse does to the camera.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum MousePreset {
-    /// As in Rerun: left turns, right shifts.
-    #[default]
-    Rerun,
-    /// As in Blender: the middle button turns, with Shift it shifts, with Ctrl it comes closer.
-    Blender,
-    /// As in Maya: all with Alt, left turns, middle shifts, right comes closer.
-    Maya,
-}
-
-impl MousePreset {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Rerun, Self::Blender, Self::Maya];
-
-    /// What dragging does, for the help sheet.
-    pub fn drags(self) -> &'static [(&'static str, &'static str)] {
-        match self {
-            Self::Rerun => &[
-                ("Left, middle drag", "turn round the pivot; look about while flying"),
-                ("Right, Shift+drag", "shift the view"),
-            ],
-            Self::Blender => &[
-                ("Middle drag", "turn round the pivot; look about while flying"),
-                ("Shift+middle drag", "shift the view"),
-                ("Ctrl+middle drag", "come closer"),
-            ],
-            Self::Maya => &[
-                ("Alt+left drag", "turn round the pivot; look about while flying"),
-                ("Alt+middle drag", "shift the view"),
-                ("Alt+right drag", "come closer"),
-            ],
-        }
-    }
-}
-
-impl fmt::Display for MousePreset {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Rerun => "rerun",
-            Self::Blender => "blender",
-            Self::Maya => "maya",
-        })
+/// What dragging does, for the help sheet.
+pub fn drags(preset: MousePreset) -> &'static [(&'static str, &'static str)] {
+    match preset {
+        MousePreset::Rerun => &[
+            ("Left, middle drag", "turn around the pivot; look about while flying"),
+            ("Right, Shift+drag", "shift the view"),
+        ],
+        MousePreset::Blender => &[
+            ("Middle drag", "turn around the pivot; look about while flying"),
+            ("Shift+middle drag", "shift the view"),
+            ("Ctrl+middle drag", "come closer"),
+        ],
+        MousePreset::Maya => &[
+            ("Alt+left drag", "turn around the pivot; look about while flying"),
+            ("Alt+middle drag", "shift the view"),
+            ("Alt+right drag", "come closer"),
+        ],
     }
 }
 
@@ -180,117 +152,136 @@ const fn shift(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::SHIFT, key)
 }
 
-const fn bind(
+/// A key that always gives the same command.
+const fn say(
     shortcut: KeyboardShortcut,
     group: Group,
+    command: &'static str,
     help: &'static str,
-    command: fn(&World<'_>) -> Command,
 ) -> Binding {
-    Binding { shortcut, group, help, command }
+    Binding { shortcut, group, help, action: Action::Say(command) }
 }
+
+/// A key whose command depends on the state of affairs.
+const fn find(
+    shortcut: KeyboardShortcut,
+    group: Group,
+    command: fn(&World<'_>) -> Command,
+    help: &'static str,
+) -> Binding {
+    Binding { shortcut, group, help, action: Action::Find(command) }
+}
+
+use Group::{Camera, Explorer, Paths, View};
 
 /// Today's bindings, in the order of the help sheet.
 const BINDINGS: &[Binding] = &[
-    bind(plain(Key::F), Group::Camera, "fly, or orbit again", |_| {
-        Command::Camera(CameraCommand::Fly(Switch::Toggle))
-    }),
-    bind(plain(Key::Num0), Group::Camera, "look through the render camera", |_| {
-        Command::Camera(CameraCommand::Through(Switch::Toggle))
-    }),
-    bind(plain(Key::Home), Group::Camera, "show the whole scene", |_| {
-        Command::Camera(CameraCommand::Frame)
-    }),
-    bind(plain(Key::Num1), Group::Camera, "from the front", |_| view(Side::Front)),
-    bind(plain(Key::Num3), Group::Camera, "from the right", |_| view(Side::Right)),
-    bind(plain(Key::Num7), Group::Camera, "from above", |_| view(Side::Top)),
-    bind(ctrl(Key::Num1), Group::Camera, "from the back", |_| view(Side::Back)),
-    bind(ctrl(Key::Num3), Group::Camera, "from the left", |_| view(Side::Left)),
-    bind(ctrl(Key::Num7), Group::Camera, "from below", |_| view(Side::Bottom)),
-    bind(plain(Key::Space), Group::Paths, "freeze the cloud, or let it go on", |_| {
-        Command::Cloud(CloudCommand::Freeze(Switch::Toggle))
-    }),
-    bind(plain(Key::Backspace), Group::Paths, "forget every path", |_| {
-        Command::Cloud(CloudCommand::Clear)
-    }),
-    bind(plain(Key::C), Group::Paths, "colour by the next property", |world| {
-        let next = after(&ColorMode::ALL, world.settings.cloud.color);
-        Command::Cloud(CloudCommand::Color(next))
-    }),
-    bind(plain(Key::M), Group::Paths, "paths cover, weigh, or add up", |world| {
-        let next = after(&Blend::ALL, world.settings.cloud.blend);
-        Command::Cloud(CloudCommand::Blend(next))
-    }),
-    bind(plain(Key::Minus), Group::Paths, "draw half as many paths", |world| {
-        Command::Cloud(CloudCommand::Shown((world.settings.cloud.shown / 2).max(1)))
-    }),
-    bind(plain(Key::Equals), Group::Paths, "draw twice as many paths", |world| {
-        let shown = world.settings.cloud.shown.max(1).saturating_mul(2);
-        Command::Cloud(CloudCommand::Shown(shown.min(10_000_000)))
-    }),
-    bind(plain(Key::H), Group::Paths, "handles of selectors move, or scale", handles),
-    bind(plain(Key::OpenBracket), Group::Paths, "thinner lines", |w| width(w, 1.0 / 1.25)),
-    bind(plain(Key::CloseBracket), Group::Paths, "thicker lines", |w| width(w, 1.25)),
-    bind(plain(Key::L), Group::Paths, "tint the light end and the camera end", |_| {
-        Command::Cloud(CloudCommand::Ends(Switch::Toggle))
-    }),
-    bind(plain(Key::V), Group::Paths, "next vertex of the selected path", |_| {
-        Command::Path(PathCommand::Vertex(VertexStep::Next))
-    }),
-    bind(shift(Key::V), Group::Paths, "previous vertex of the selected path", |_| {
-        Command::Path(PathCommand::Vertex(VertexStep::Previous))
-    }),
-    bind(plain(Key::Escape), Group::Paths, "select no path", |_| {
-        Command::Path(PathCommand::Deselect)
-    }),
-    bind(plain(Key::Enter), Group::Explorer, "explore the selected path, or the newest", seed),
-    bind(plain(Key::K), Group::Explorer, "play or pause", play_or_pause),
-    bind(plain(Key::N), Group::Explorer, "one step", |w| {
-        in_file(w, PlayCommand::By(1)).unwrap_or_else(|| explore(ExplorerCommand::Step(1)))
-    }),
-    bind(shift(Key::N), Group::Explorer, "on to the next acceptance", |w| {
-        let skip = explore(ExplorerCommand::Skip(SkipTo::Acceptance));
-        in_file(w, PlayCommand::Accepted).unwrap_or(skip)
-    }),
-    bind(ctrl(Key::Z), Group::View, "undo", |_| Command::Undo),
-    bind(ctrl(Key::Y), Group::View, "redo", |_| Command::Redo),
-    bind(
-        plain(Key::Z),
-        Group::View,
-        "next shading: shaded, plain, texture, edges, wireframe, off",
-        |world| {
-            let next = after(&Shading::ALL, world.settings.scene.shading);
-            Command::Scene(SceneCommand::Shading(next))
-        },
+    say(plain(Key::F), Camera, "camera fly toggle", "fly, or orbit again"),
+    say(plain(Key::Num0), Camera, "camera through toggle", "look through the render camera"),
+    say(plain(Key::Home), Camera, "camera frame", "show the whole scene"),
+    say(plain(Key::Num1), Camera, "camera view front", "from the front"),
+    say(plain(Key::Num3), Camera, "camera view right", "from the right"),
+    say(plain(Key::Num7), Camera, "camera view top", "from above"),
+    say(ctrl(Key::Num1), Camera, "camera view back", "from the back"),
+    say(ctrl(Key::Num3), Camera, "camera view left", "from the left"),
+    say(ctrl(Key::Num7), Camera, "camera view bottom", "from below"),
+    say(plain(Key::Space), Paths, "cloud freeze toggle", "freeze the cloud, or let it go on"),
+    say(plain(Key::Backspace), Paths, "cloud clear", "forget every path"),
+    find(plain(Key::C), Paths, |w| next(w, &CloudSettings::color()), "colour by the next property"),
+    find(
+        plain(Key::M),
+        Paths,
+        |w| next(w, &CloudSettings::blend()),
+        "paths cover, weigh, or add up",
     ),
-    bind(plain(Key::X), Group::View, "X-ray: see through surfaces", |world| {
-        let solid = world.settings.scene.opacity > 0.99;
-        Command::Scene(SceneCommand::Opacity(if solid { 0.3 } else { 1.0 }))
-    }),
-    bind(plain(Key::B), Group::View, "cut away surfaces seen from behind", |_| {
-        Command::Scene(SceneCommand::Cutaway(Switch::Toggle))
-    }),
-    bind(plain(Key::G), Group::View, "grid", |_| {
-        Command::Scene(SceneCommand::Grid(Switch::Toggle))
-    }),
-    bind(plain(Key::Comma), Group::View, "image half a stop darker", |w| exposure(w, -0.5)),
-    bind(plain(Key::Period), Group::View, "image half a stop brighter", |w| exposure(w, 0.5)),
-    bind(plain(Key::I), Group::View, "image panel", |_| panel(PanelName::Image)),
-    bind(plain(Key::P), Group::View, "statistics panel", |_| panel(PanelName::Statistics)),
-    bind(plain(Key::T), Group::View, "dark or light", |_| {
-        Command::Layout(LayoutCommand::Theme(ThemeName::Toggle))
-    }),
-    bind(ctrl(Key::P), Group::View, "find a command by typing", |_| {
-        Command::Layout(LayoutCommand::Palette(Switch::Toggle))
-    }),
-    bind(ctrl(Key::Plus), Group::View, "larger texts and buttons", |w| scale(w, 10)),
-    bind(ctrl(Key::Minus), Group::View, "smaller texts and buttons", |w| scale(w, -10)),
-    bind(ctrl(Key::L), Group::View, "copy a link to this view", |_| {
-        Command::Desk(DeskCommand::Share)
-    }),
-    bind(plain(Key::R), Group::View, "connect now", |_| Command::Reconnect),
-    bind(plain(Key::F1), Group::View, "keys and mouse; also ?", |_| help()),
-    bind(ctrl(Key::Q), Group::View, "quit", |_| Command::Quit),
+    find(plain(Key::Minus), Paths, |w| drawn(w, 0.5), "draw half as many paths"),
+    find(plain(Key::Equals), Paths, |w| drawn(w, 2.0), "draw twice as many paths"),
+    find(plain(Key::H), Paths, handles, "handles of selectors move, or scale"),
+    find(plain(Key::OpenBracket), Paths, |w| width(w, 1.0 / 1.25), "thinner lines"),
+    find(plain(Key::CloseBracket), Paths, |w| width(w, 1.25), "thicker lines"),
+    say(plain(Key::L), Paths, "cloud ends toggle", "tint the light end and the camera end"),
+    say(plain(Key::V), Paths, "path vertex next", "next vertex of the selected path"),
+    say(shift(Key::V), Paths, "path vertex previous", "previous vertex of the selected path"),
+    say(plain(Key::Escape), Paths, "path none", "select no path"),
+    find(plain(Key::Enter), Explorer, seed, "explore the selected path, or the newest"),
+    find(plain(Key::K), Explorer, play_or_pause, "play or pause"),
+    find(plain(Key::N), Explorer, step, "one step"),
+    find(shift(Key::N), Explorer, skip, "on to the next acceptance"),
+    say(ctrl(Key::Z), View, "undo", "undo"),
+    say(ctrl(Key::Y), View, "redo", "redo"),
+    find(
+        plain(Key::Z),
+        View,
+        shading,
+        "next shading: shaded, plain, texture, edges, wireframe, off",
+    ),
+    find(plain(Key::X), View, x_ray, "X-ray: see through surfaces"),
+    say(plain(Key::B), View, "scene cutaway toggle", "cut away surfaces seen from behind"),
+    say(plain(Key::G), View, "scene grid toggle", "grid"),
+    find(plain(Key::Comma), View, |w| brighter(w, -0.5), "image half a stop darker"),
+    find(plain(Key::Period), View, |w| brighter(w, 0.5), "image half a stop brighter"),
+    say(plain(Key::I), View, "panel image toggle", "image panel"),
+    say(plain(Key::P), View, "panel statistics toggle", "statistics panel"),
+    say(plain(Key::T), View, "theme toggle", "dark or light"),
+    say(ctrl(Key::P), View, "palette toggle", "find a command by typing"),
+    find(ctrl(Key::Plus), View, |w| larger(w, 10.0), "larger texts and buttons"),
+    find(ctrl(Key::Minus), View, |w| larger(w, -10.0), "smaller texts and buttons"),
+    say(ctrl(Key::L), View, "share", "copy a link to this view"),
+    say(plain(Key::R), View, "reconnect", "connect now"),
+    say(plain(Key::F1), View, "help toggle", "keys and mouse; also ?"),
+    say(ctrl(Key::Q), View, "quit", "quit"),
 ];
+
+/// The choice after the present one.
+fn next<G: Settings, T: Choice + Settable<Change = T>>(
+    world: &World<'_>,
+    setting: &Setting<G, T>,
+) -> Command {
+    (setting.set)(setting.value(world.settings).next())
+}
+
+/// The number that `step` makes of the present one, within its range.
+fn moved<G: Settings, T: Number + Settable<Change = T>>(
+    world: &World<'_>,
+    setting: &Setting<G, T>,
+    step: impl Fn(f64) -> f64,
+) -> Command {
+    let wished = step(setting.value(world.settings).to_f64());
+    let within = setting.form.range().map_or(wished, |range| range.clamp(wished));
+    (setting.set)(T::from_f64(within))
+}
+
+fn drawn(world: &World<'_>, factor: f64) -> Command {
+    moved(world, &CloudSettings::shown(), |paths| (paths.max(1.0) * factor).max(1.0).floor())
+}
+
+fn width(world: &World<'_>, factor: f64) -> Command {
+    moved(world, &CloudSettings::width(), |pixels| pixels * factor)
+}
+
+fn larger(world: &World<'_>, percent: f64) -> Command {
+    moved(world, &WindowSettings::scale(), |scale| scale + percent)
+}
+
+fn brighter(world: &World<'_>, stops: f32) -> Command {
+    let wished = f64::from(world.settings.image.exposure.stops() + stops);
+    let range = ImageSettings::exposure().form.range();
+    let within = range.map_or(wished, |range| range.clamp(wished));
+    Command::Image(ImageCommand::Exposure(within as f32))
+}
+
+fn handles(world: &World<'_>) -> Command {
+    next(world, &SceneSettings::handles())
+}
+
+fn shading(world: &World<'_>) -> Command {
+    next(world, &SceneSettings::shading())
+}
+
+fn x_ray(world: &World<'_>) -> Command {
+    let solid = world.settings.scene.opacity > 0.99;
+    Command::Scene(SceneCommand::Opacity(if solid { 0.3 } else { 1.0 }))
+}
 
 /// The command for a file of paths, where one is played.
 fn in_file(world: &World<'_>, command: PlayCommand) -> Option<Command> {
@@ -303,8 +294,13 @@ fn seed(world: &World<'_>) -> Command {
     explore(ExplorerCommand::Seed(seed))
 }
 
-fn handles(world: &World<'_>) -> Command {
-    Command::Scene(SceneCommand::Handles(after(&Handles::ALL, world.settings.scene.handles)))
+fn step(world: &World<'_>) -> Command {
+    in_file(world, PlayCommand::By(1)).unwrap_or_else(|| explore(ExplorerCommand::Step(1)))
+}
+
+fn skip(world: &World<'_>) -> Command {
+    let skip = explore(ExplorerCommand::Skip(SkipTo::Acceptance));
+    in_file(world, PlayCommand::Accepted).unwrap_or(skip)
 }
 
 fn play_or_pause(world: &World<'_>) -> Command {
@@ -346,7 +342,7 @@ pub fn pressed(ctx: &egui::Context, world: &World<'_>, commands: &mut Vec<Comman
         return;
     }
     let is_over = ctx.memory(|memory| memory.top_modal_layer().is_some());
-    if is_over && !world.settings.layout.help {
+    if is_over && !world.settings.window.help {
         return;
     }
     if ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Questionmark)) {
@@ -359,49 +355,19 @@ pub fn pressed(ctx: &egui::Context, world: &World<'_>, commands: &mut Vec<Comman
         }
         return;
     }
-    let preset = world.settings.layout.keys;
+    let preset = world.settings.window.keys;
     // Those with modifiers first: without them, a key also fits its plain binding.
     let (plain, modified): (Vec<&Binding>, Vec<&Binding>) =
         bindings(preset).into_iter().partition(|b| b.shortcut.modifiers == Modifiers::NONE);
     for binding in modified.into_iter().chain(plain) {
         if ctx.input_mut(|input| input.consume_shortcut(&binding.shortcut)) {
-            commands.push((binding.command)(world));
+            commands.push(binding.command(world));
         }
     }
 }
 
 fn help() -> Command {
-    Command::Layout(LayoutCommand::Help(Switch::Toggle))
-}
-
-fn view(side: Side) -> Command {
-    Command::Camera(CameraCommand::View(side))
-}
-
-fn panel(name: PanelName) -> Command {
-    Command::Layout(LayoutCommand::Panel(name, Switch::Toggle))
-}
-
-fn width(world: &World<'_>, factor: f32) -> Command {
-    let width = (world.settings.cloud.width * factor).clamp(0.25, 20.0);
-    Command::Cloud(CloudCommand::Width(width))
-}
-
-/// The interface larger by `percent`.
-fn scale(world: &World<'_>, percent: i16) -> Command {
-    let scale = world.settings.layout.scale.saturating_add_signed(percent);
-    Command::Layout(LayoutCommand::Scale(scale.clamp(*SCALES.start(), *SCALES.end())))
-}
-
-fn exposure(world: &World<'_>, stops: f32) -> Command {
-    let exposure = (world.settings.image.exposure + stops).clamp(-20.0, 20.0);
-    Command::Image(ImageCommand::Exposure(exposure))
-}
-
-/// The choice after the present one, round and round.
-fn after<T: Copy + PartialEq>(all: &[T], present: T) -> T {
-    let next = all.iter().position(|c| *c == present).map_or(0, |i| (i + 1) % all.len());
-    all.get(next).copied().unwrap_or(present)
+    Command::Window(WindowCommand::Help(Switch::Toggle))
 }
 
 #[cfg(test)]
@@ -410,16 +376,22 @@ mod tests {
 
     #[test]
     fn no_key_has_two_meanings() {
-        for (i, a) in BINDINGS.iter().enumerate() {
-            for b in &BINDINGS[i + 1..] {
-                assert!(a.shortcut != b.shortcut, "`{}` and `{}` share a key", a.help, b.help);
+        for preset in KeyPreset::ALL {
+            let all = bindings(preset);
+            for (i, binding) in all.iter().enumerate() {
+                let other = all.iter().skip(i + 1).find(|b| b.shortcut == binding.shortcut);
+                assert!(other.is_none(), "{preset}: {} and {other:?}", binding.help);
             }
+            assert!(all.len() > 30, "{preset}: {} keys", all.len());
         }
     }
 
     #[test]
-    fn choices_go_round() {
-        assert_eq!(after(&[1, 2, 3], 1), 2, "the next");
-        assert_eq!(after(&[1, 2, 3], 3), 1, "round");
+    fn what_keys_say_are_commands() {
+        for binding in KeyPreset::ALL.into_iter().flat_map(bindings) {
+            if let Action::Say(text) = binding.action {
+                assert!(text.parse::<Command>().is_ok(), "{}: `{text}`", binding.help);
+            }
+        }
     }
 }

@@ -2,128 +2,92 @@
 
 use egui::{Button, ProgressBar, RichText, Ui};
 
-use super::Panel;
-use super::widgets::{Scale, choice, row, slider, toggle};
-use crate::command::{Blend, CloudCommand, ColorMode, ColorScale, Command, Marks, Switch};
-use crate::value::format;
+use super::lines::Lines;
+use super::widgets::{row, setting};
+use super::{Panel, Section};
+use crate::command::{CloudCommand, CloudSettings, Command};
+use crate::keys::Group;
+use crate::value::PanelName;
+use crate::value::{Switch, format};
 use crate::world::World;
 
 /// The settings of the cloud.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Cloud;
 
 impl Panel for Cloud {
     fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
-        let mut push = |command| commands.push(Command::Cloud(command));
-        ui.horizontal(|ui| buttons(ui, world, &mut push));
+        ui.horizontal(|ui| buttons(ui, world, commands));
         ui.add_space(4.0);
-        look(ui, world, &mut push);
+        appearance(ui, world, commands);
         ui.add_space(4.0);
-        budget(ui, world, &mut push);
+        budget(ui, world, commands);
     }
 }
 
-fn buttons(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(CloudCommand)) {
+impl Section for Cloud {
+    const NAME: PanelName = PanelName::Cloud;
+    const TITLE: &'static str = "Paths";
+    const HELP: &'static [&'static str] = &[
+        "The lines are paths of light, each from the light to the camera, as the chains found \
+         them.",
+        "Colour says one thing at a time; the legend in the corner tells which. The budget bounds \
+         the memory for paths; older ones go first.",
+    ];
+    const KEYS: &'static [Group] = &[Group::Paths];
+
+    fn text(world: &World<'_>) -> String {
+        world.settings.cloud.commands().into_iter().collect::<Lines>().text()
+    }
+}
+
+fn buttons(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     let frozen = world.settings.cloud.frozen;
     let label = if frozen { "Go on" } else { "Freeze" };
     let freeze = ui
         .add(Button::new(label).selected(frozen))
         .on_hover_text("Hold the cloud still; the chains go on (Space)");
     if freeze.clicked() {
-        push(CloudCommand::Freeze(Switch::to(!frozen)));
+        commands.push(Command::Cloud(CloudCommand::Freeze(Switch::to(!frozen))));
     }
     let clear = ui.button("Clear").on_hover_text("Forget every path (Backspace)");
     if clear.clicked() {
-        push(CloudCommand::Clear);
+        commands.push(Command::Cloud(CloudCommand::Clear));
     }
 }
 
-fn look(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(CloudCommand)) {
-    let cloud = &world.settings.cloud;
-    let tip = "What the colour of a path says; the legend explains it (C)";
-    if let Some(mode) = choice(ui, "Colour", tip, cloud.color, &ColorMode::ALL) {
-        push(CloudCommand::Color(mode));
+fn appearance(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    use CloudSettings as Cloud;
+    setting(ui, world, &Cloud::color(), commands);
+    if world.settings.cloud.color.has_scale() {
+        setting(ui, world, &Cloud::scale(), commands);
     }
-    if cloud.color.has_scale() {
-        let tip = "Equal factors or equal differences make equal steps of colour";
-        if let Some(scale) = choice(ui, "Scale", tip, cloud.scale, &ColorScale::ALL) {
-            push(CloudCommand::Scale(scale));
-        }
-    }
-    let tip = "Whole paths, their vertices alone, or only the vertex on the light and the one seen";
-    if let Some(marks) = choice(ui, "Draw", tip, cloud.marks, &Marks::ALL) {
-        push(CloudCommand::Marks(marks));
-    }
-    let tip = "Newest: it covers the others. Weighted: each counts by its opacity, near ones more, in \
-               whatever order they came. Add: like light, for dark ground (M)";
-    if let Some(blend) = choice(ui, "Crossing", tip, cloud.blend, &Blend::ALL) {
-        push(CloudCommand::Blend(blend));
-    }
-    let tip = "Width of the lines on screen, whatever their distance ( [ and ] )";
-    let scale = Scale::logarithmic(0.25..=20.0, 2).suffix(" px");
-    if let Some(pixels) = slider(ui, "Width", tip, cloud.width, scale) {
-        push(CloudCommand::Width(pixels));
-    }
-    let tip = "Opacity of the newest, brightest path";
-    if let Some(x) = slider(ui, "Opacity", tip, cloud.opacity, Scale::linear(0.0..=1.0, 2)) {
-        push(CloudCommand::Opacity(x));
-    }
-    let tip = "How much is seen of the parts that lie behind surfaces";
-    if let Some(x) = slider(ui, "Hidden", tip, cloud.hidden, Scale::linear(0.0..=1.0, 2)) {
-        push(CloudCommand::Hidden(x));
-    }
-    let tip = "How much distance dims paths, so that near ones stand out";
-    if let Some(x) = slider(ui, "Depth cue", tip, cloud.cue, Scale::linear(0.0..=1.0, 2)) {
-        push(CloudCommand::Cue(x));
-    }
-    let tip = "After how many newer paths a path has faded";
-    let scale = Scale::logarithmic(1.0..=1e6, 0);
-    if let Some(paths) = slider(ui, "Fade after", tip, cloud.fade, scale) {
-        push(CloudCommand::Fade(paths));
-    }
-    let tip = "Radius of the dots at inner vertices; 0 for none";
-    let scale = Scale::linear(0.0..=8.0, 1).suffix(" px");
-    if let Some(pixels) = slider(ui, "Dots", tip, cloud.dots, scale) {
-        push(CloudCommand::Dots(pixels));
-    }
-    let tip = "Amber at the start, on the light; blue at the end, towards the camera (L)";
-    if let Some(switch) = toggle(ui, "Tint start and end", tip, cloud.ends) {
-        push(CloudCommand::Ends(switch));
-    }
+    setting(ui, world, &Cloud::marks(), commands);
+    setting(ui, world, &Cloud::blend(), commands);
+    setting(ui, world, &Cloud::width(), commands);
+    setting(ui, world, &Cloud::opacity(), commands);
+    setting(ui, world, &Cloud::hidden(), commands);
+    setting(ui, world, &Cloud::cue(), commands);
+    setting(ui, world, &Cloud::fade(), commands);
+    setting(ui, world, &Cloud::dots(), commands);
+    setting(ui, world, &Cloud::ends(), commands);
 }
 
 /// How many paths wait, are drawn and are kept: the limits, and where they stand.
-fn budget(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(CloudCommand)) {
+fn budget(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
+    use CloudSettings as Cloud;
     let cloud = &world.settings.cloud;
     let store = world.store;
     ui.label(RichText::new("Budget").strong());
-    let many = || Scale::logarithmic(1.0..=1e6, 0);
-    let tip = "How many of the newest paths are drawn at once (- and =; draw limit of 2014)";
-    if let Some(paths) = slider(ui, "Draw", tip, cloud.shown as f32, many()) {
-        push(CloudCommand::Shown(paths.round() as u32));
-    }
-    let tip = "Memory for paths; when it is full, the oldest go";
-    let scale = Scale::logarithmic(8.0..=8192.0, 0).suffix(" MiB");
-    if let Some(mebibytes) = slider(ui, "Keep", tip, cloud.budget_mib as f32, scale) {
-        push(CloudCommand::Budget(mebibytes.round() as u32));
-    }
+    setting(ui, world, &Cloud::shown(), commands);
+    setting(ui, world, &Cloud::budget_mib(), commands);
     row(ui, "", "", |ui| {
         let share = store.byte_len() as f32 / store.budget().max(1) as f32;
         ui.add(ProgressBar::new(share).desired_height(5.0).desired_width(ui.available_width()))
             .on_hover_text("How full the memory for paths is");
     });
-    let tip = "How many paths must wait before they are taken in and filtered, all at once; \
-               0 takes each as it comes (threshold of 2014)";
-    let scale = Scale::logarithmic(0.0..=1e6, 0);
-    if let Some(paths) = slider(ui, "Take in at", tip, cloud.threshold as f32, scale) {
-        push(CloudCommand::Threshold(paths.round() as u32));
-    }
-    let tip = "How many paths may wait to be taken in; when more do, the oldest go, and the status \
-               bar counts them as lost (limit of 2014)";
-    let scale = Scale::logarithmic(10.0..=1e6, 0);
-    if let Some(paths) = slider(ui, "Wait", tip, cloud.limit as f32, scale) {
-        push(CloudCommand::Limit(paths.round() as u32));
-    }
+    setting(ui, world, &Cloud::threshold(), commands);
+    setting(ui, world, &Cloud::limit(), commands);
     let count = |paths: usize| format::count(paths as f64);
     let drawn = (cloud.shown as usize).min(store.len());
     let standing = format!(
@@ -142,6 +106,7 @@ mod tests {
 
     use super::super::tests::{Stage, shows};
     use super::*;
+    use crate::value::ColorMode;
 
     #[test]
     fn the_budget_stands_below_the_look() {
@@ -155,7 +120,7 @@ mod tests {
         {
             assert!(shows(&harness, text), "`{text}` is missing");
         }
-        harness.get_by_label("Take in at").hover();
+        harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Take in at").hover();
         harness.run_steps(30);
         assert!(shows(&harness, "threshold of 2014"), "what it was called is told");
     }

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Button, RichText, TextEdit, Ui};
 
-use crate::command::{Command, DeskCommand, HOME};
+use crate::command::{Command, DesktopCommand, HOME};
 use crate::world::World;
 
 /// What the user has typed.
@@ -23,13 +23,13 @@ impl ConnectMenu {
         ui.set_min_width(250.0);
         let hint = "HOST:PORT, or a link";
         if let Some(address) = line(ui, &mut self.address, hint, "Connect") {
-            commands.push(Command::Desk(DeskCommand::Connect(address)));
+            commands.push(Command::Desktop(DesktopCommand::Connect(address)));
             ui.close();
         }
         if world.has_home && !world.status.embedded {
             let tip = "Back to the daemon inside this program";
             if ui.button("The built-in daemon").on_hover_text(tip).clicked() {
-                commands.push(Command::Desk(DeskCommand::Connect(HOME.to_owned())));
+                commands.push(Command::Desktop(DesktopCommand::Connect(HOME.to_owned())));
                 ui.close();
             }
         }
@@ -39,7 +39,7 @@ impl ConnectMenu {
         for address in world.recent {
             let here = world.status.is_connected() && *address == world.status.address;
             if ui.add_enabled(!here, Button::new(address)).clicked() {
-                commands.push(Command::Desk(DeskCommand::Connect(address.clone())));
+                commands.push(Command::Desktop(DesktopCommand::Connect(address.clone())));
                 ui.close();
             }
         }
@@ -48,11 +48,11 @@ impl ConnectMenu {
             .button("Copy link to this view")
             .on_hover_text("Restores camera, filter, selection and colours: viewer-client LINK");
         if link.clicked() {
-            commands.push(Command::Desk(DeskCommand::Share));
+            commands.push(Command::Desktop(DesktopCommand::Share));
             ui.close();
         }
         if let Some(file) = line(ui, &mut self.screenshot, "file.png", "Screenshot") {
-            commands.push(Command::Desk(DeskCommand::Screenshot(file)));
+            commands.push(Command::Desktop(DesktopCommand::Screenshot(file)));
             ui.close();
         }
     }

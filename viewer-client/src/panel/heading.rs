@@ -6,12 +6,13 @@ use egui::collapsing_header::paint_default_icon;
 use egui::containers::menu::MenuButton;
 use egui::{Align, Button, Grid, Label, Layout, Response, RichText, Sense, Ui, vec2};
 
-use super::sheets;
+use super::about;
 use super::widgets::scrolling;
-use crate::command::{Command, DeskCommand, LayoutCommand, Move, PanelName, Source, Switch};
+use crate::command::{Command, DesktopCommand, LayoutCommand};
 use crate::keys::{bindings, key_name};
 use crate::settings::Layout as Settled;
 use crate::value::theme;
+use crate::value::{Move, PanelName, Part, Switch};
 use crate::world::World;
 
 /// Shows the heading of a section.
@@ -26,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, name: PanelName, world: &World<'_>, commands: &m
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let close = Button::new(RichText::new("×").weak().size(15.0)).frame(false);
-            let tip = format!("Close; the View menu opens {} again", name.title());
+            let tip = format!("Close; the View menu opens {} again", about(name).title);
             if ui.add(close).on_hover_text(tip).clicked() {
                 push(LayoutCommand::Panel(name, Switch::Off));
             }
@@ -34,11 +35,11 @@ pub(super) fn show(ui: &mut Ui, name: PanelName, world: &World<'_>, commands: &m
             let mark = Button::new(RichText::new("?").weak()).frame(false);
             let menu = MenuButton::from_button(mark);
             let (response, _) = menu.ui(ui, |ui| scrolling(ui, |ui| sheet(ui, name, world)));
-            response.on_hover_text(format!("What {} is for", name.title()));
+            response.on_hover_text(format!("What {} is for", about(name).title));
         });
     });
     if copy {
-        commands.push(Command::Desk(DeskCommand::Copy(Source::Panel(name))));
+        commands.push(Command::Desktop(DesktopCommand::Copy(Part::Panel(name))));
     }
     let line = ui.visuals().widgets.noninteractive.bg_stroke;
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 5.0), Sense::hover());
@@ -71,7 +72,7 @@ fn menu(
         }
         copy
     });
-    response.on_hover_text(format!("Copy or move {}", name.title()));
+    response.on_hover_text(format!("Copy or move {}", about(name).title));
     shown.is_some_and(|shown| shown.inner)
 }
 
@@ -79,7 +80,7 @@ fn menu(
 fn title(ui: &mut Ui, name: PanelName, folded: bool) -> Response {
     let (_, arrow) = ui.allocate_exact_size(vec2(11.0, 11.0), Sense::hover());
     paint_default_icon(ui, if folded { 0.0 } else { 1.0 }, &arrow);
-    let text = RichText::new(name.title()).strong().size(14.0);
+    let text = RichText::new(about(name).title).strong().size(14.0);
     let title = ui.add(Label::new(text).selectable(false).sense(Sense::click_and_drag()));
     title.dnd_set_drag_payload(name);
     let fold = if folded { "unfolds" } else { "folds" };
@@ -101,13 +102,13 @@ pub(super) fn receive(ui: &Ui, response: &Response, name: PanelName, commands: &
 /// What a section is for, and its keys.
 fn sheet(ui: &mut Ui, name: PanelName, world: &World<'_>) {
     ui.set_max_width(340.0);
-    ui.label(RichText::new(name.title()).strong().size(14.0));
-    for line in sheets::lines(name) {
+    ui.label(RichText::new(about(name).title).strong().size(14.0));
+    for line in about(name).help {
         ui.add(Label::new(*line).wrap());
     }
-    let keys: Vec<_> = bindings(world.settings.layout.keys)
+    let keys: Vec<_> = bindings(world.settings.window.keys)
         .into_iter()
-        .filter(|binding| sheets::groups(name).contains(&binding.group))
+        .filter(|binding| about(name).keys.contains(&binding.group))
         .collect();
     if keys.is_empty() {
         return;

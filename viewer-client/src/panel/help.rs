@@ -3,11 +3,13 @@
 use egui::{Align, Button, Frame, Grid, Id, Label, Layout, Modal, RichText, Ui, Vec2, vec2};
 
 use super::Panel;
-use super::widgets::{capitalised, scrolling_within};
-use crate::command::{Command, LayoutCommand, Switch};
-use crate::keys::{Group, KeyPreset, MousePreset, bindings, key_name};
-use crate::settings::Layout as Settled;
+use super::widgets::scrolling_within;
+use crate::command::{Command, WindowCommand};
+use crate::keys::{Group, bindings, drags, key_name, mouse};
+use crate::settings::WindowSettings;
+use crate::value::Switch;
 use crate::value::theme;
+use crate::value::{Choice as _, KeyPreset, MousePreset};
 use crate::world::World;
 
 /// Widest that the sheet gets, in points.
@@ -26,23 +28,23 @@ pub(super) struct Help;
 
 impl Panel for Help {
     fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
-        if !world.settings.layout.help {
+        if !world.settings.window.help {
             return;
         }
         let frame = Frame::popup(ui.style()).inner_margin(20);
         let modal = Modal::new(Id::unique("help"))
             .frame(frame)
-            .show(ui.ctx(), |ui| sheet(ui, &world.settings.layout, commands));
+            .show(ui.ctx(), |ui| sheet(ui, &world.settings.window, commands));
         if modal.should_close() || modal.inner {
-            commands.push(Command::Layout(LayoutCommand::Help(Switch::Off)));
+            commands.push(Command::Window(WindowCommand::Help(Switch::Off)));
         }
     }
 }
 
 /// The sheet; true when its button was clicked.
-fn sheet(ui: &mut Ui, layout: &Settled, commands: &mut Vec<Command>) -> bool {
-    let window = ui.ctx().content_rect().size();
-    ui.set_width((window.x - AROUND.x).min(WIDTH));
+fn sheet(ui: &mut Ui, window: &WindowSettings, commands: &mut Vec<Command>) -> bool {
+    let size = ui.ctx().content_rect().size();
+    ui.set_width((size.x - AROUND.x).min(WIDTH));
     let close = ui.horizontal(|ui| {
         ui.label(RichText::new("Keys and mouse").heading().strong());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -52,25 +54,25 @@ fn sheet(ui: &mut Ui, layout: &Settled, commands: &mut Vec<Command>) -> bool {
     });
     ui.add_space(8.0);
     // The heading stays; all else scrolls where the window is low.
-    scrolling_within(ui, window.y - AROUND.y, |ui| {
-        lists(ui, layout);
-        choices(ui, layout, commands);
+    scrolling_within(ui, size.y - AROUND.y, |ui| {
+        lists(ui, window);
+        choices(ui, window, commands);
     });
     close.inner
 }
 
 /// The lists, beside each other as far as there is room for their words.
-fn lists(ui: &mut Ui, layout: &Settled) {
-    let preset = layout.keys;
-    let drags = match preset {
-        KeyPreset::Today => layout.mouse.drags(),
+fn lists(ui: &mut Ui, window: &WindowSettings) {
+    let preset = window.keys;
+    let dragged = match preset {
+        KeyPreset::Today => drags(window.mouse),
         KeyPreset::Classic => &[],
     };
-    let mouse = preset.mouse().iter().chain(drags);
-    let mouse = mouse.map(|(key, help)| ((*key).to_owned(), *help)).collect();
+    let lines = mouse(preset).iter().chain(dragged);
+    let lines = lines.map(|(key, help)| ((*key).to_owned(), *help)).collect();
     let of = |group: Group| (group.title(), keys(preset, group));
     let lists: [List; 5] = [
-        ("Mouse", mouse),
+        ("Mouse", lines),
         of(Group::Camera),
         of(Group::Paths),
         of(Group::Explorer),
@@ -92,23 +94,19 @@ fn lists(ui: &mut Ui, layout: &Settled) {
 }
 
 /// Whose keys and whose mouse.
-fn choices(ui: &mut Ui, layout: &Settled, commands: &mut Vec<Command>) {
+fn choices(ui: &mut Ui, window: &WindowSettings, commands: &mut Vec<Command>) {
     let text = "A path starts at the light and ends at the camera.";
     ui.label(RichText::new(text).weak());
     ui.horizontal_wrapped(|ui| {
         for preset in KeyPreset::ALL {
-            let (name, tip) = match preset {
-                KeyPreset::Today => ("Today's keys", "Those of today's programs"),
-                KeyPreset::Classic => ("Keys of 2014", "Those of the first Lvis"),
-            };
-            let button = Button::selectable(preset == layout.keys, name);
-            if ui.add(button).on_hover_text(tip).clicked() {
-                commands.push(Command::Layout(LayoutCommand::Keys(preset)));
+            let button = Button::selectable(preset == window.keys, preset.label());
+            if ui.add(button).on_hover_text(preset.meaning()).clicked() {
+                commands.push(Command::Window(WindowCommand::Keys(preset)));
             }
         }
-        if layout.keys == KeyPreset::Today {
+        if window.keys == KeyPreset::Today {
             ui.add_space(12.0);
-            mice(ui, layout.mouse, commands);
+            mice(ui, window.mouse, commands);
         }
     });
 }
@@ -117,12 +115,9 @@ fn choices(ui: &mut Ui, layout: &Settled, commands: &mut Vec<Command>) {
 fn mice(ui: &mut Ui, chosen: MousePreset, commands: &mut Vec<Command>) {
     ui.label(RichText::new("Mouse as in").weak());
     for preset in MousePreset::ALL {
-        let name = capitalised(&preset.to_string());
-        let first = preset.drags().first().map_or("", |(drag, _)| drag);
-        let tip = format!("Drag as in {name}: {first} turns");
-        let button = Button::selectable(preset == chosen, name);
-        if ui.add(button).on_hover_text(tip).clicked() {
-            commands.push(Command::Layout(LayoutCommand::Mouse(preset)));
+        let button = Button::selectable(preset == chosen, preset.label());
+        if ui.add(button).on_hover_text(preset.meaning()).clicked() {
+            commands.push(Command::Window(WindowCommand::Mouse(preset)));
         }
     }
 }

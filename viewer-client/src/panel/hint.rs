@@ -3,7 +3,8 @@
 use egui::{Align2, Area, Frame, Grid, Id, Order, Rect, RichText, Ui, vec2};
 
 use super::Panel;
-use crate::command::{Command, LayoutCommand, Switch};
+use crate::command::{Command, WindowCommand};
+use crate::value::Switch;
 use crate::value::theme;
 use crate::world::World;
 
@@ -29,7 +30,7 @@ pub(super) struct Hint;
 
 impl Panel for Hint {
     fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
-        if !world.settings.layout.hint || world.model.is_none() {
+        if !world.settings.window.hint || world.model.is_none() {
             return;
         }
         let view = ui.max_rect();
@@ -53,7 +54,7 @@ fn card(ui: &mut Ui, commands: &mut Vec<Command>) {
             let text = "The lines are paths of light, as the chains find them.";
             ui.label(RichText::new(text).small().strong());
             if ui.small_button("Got it").clicked() {
-                commands.push(Command::Layout(LayoutCommand::Hint(Switch::Off)));
+                commands.push(Command::Window(WindowCommand::Hint(Switch::Off)));
             }
         });
         let accent = theme::accent(ui.visuals().dark_mode);

@@ -74,7 +74,7 @@ pub(super) fn is_strategy(ctx: &Context, index: usize) -> bool {
 /// The step of the explorer to show: the one that is pointed at, or else the one that was chosen.
 pub(super) fn moment<'a>(ctx: &Context, world: &World<'a>) -> Option<&'a Moment> {
     let by_hand = match pointed(ctx) {
-        Some(Pointed::Step(number)) => world.status.steering.focus.moment(Some(number)),
+        Some(Pointed::Step(number)) => world.status.steering.focus.step(number),
         _ => None,
     };
     by_hand.or(world.moment)

@@ -3,12 +3,13 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Align, Button, Label, Layout, MenuBar, PopupCloseBehavior, RichText, Ui};
 
-use super::Panel;
 use super::connect::ConnectMenu;
 use super::widgets::{capitalised, scrolling};
-use crate::command::{Command, LayoutCommand, PanelName, Switch, ThemeName};
+use super::{Panel, about};
+use crate::command::{Command, LayoutCommand, WindowCommand};
 use crate::keys::{Binding, Group, bindings, key_name};
 use crate::value::theme;
+use crate::value::{PanelName, Switch, ThemeChange};
 use crate::world::World;
 
 /// Menus.
@@ -51,7 +52,7 @@ impl Panel for Menu {
 
 /// Every key of a group, as a menu.
 fn group(ui: &mut Ui, world: &World<'_>, group: Group, commands: &mut Vec<Command>) {
-    let keys = bindings(world.settings.layout.keys);
+    let keys = bindings(world.settings.window.keys);
     for binding in keys.into_iter().filter(|b| b.group == group) {
         item(ui, world, binding, commands);
     }
@@ -61,7 +62,7 @@ fn item(ui: &mut Ui, world: &World<'_>, binding: &Binding, commands: &mut Vec<Co
     let label = capitalised(binding.help);
     let key = key_name(binding.shortcut);
     if ui.add(Button::new(label).shortcut_text(key)).clicked() {
-        commands.push((binding.command)(world));
+        commands.push(binding.command(world));
         ui.close();
     }
 }
@@ -69,20 +70,20 @@ fn item(ui: &mut Ui, world: &World<'_>, binding: &Binding, commands: &mut Vec<Co
 fn windows(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     for name in PanelName::ALL {
         let mut open = world.settings.layout.is_open(name);
-        if ui.checkbox(&mut open, name.title()).changed() {
+        if ui.checkbox(&mut open, about(name).title).changed() {
             commands.push(Command::Layout(LayoutCommand::Panel(name, Switch::to(open))));
         }
     }
 }
 
 fn right(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
-    let (symbol, tip) = if world.settings.layout.dark {
+    let (symbol, tip) = if world.settings.window.is_dark() {
         ("Light", "Light colours (T)")
     } else {
         ("Dark", "Dark colours (T)")
     };
     if ui.button(symbol).on_hover_text(tip).clicked() {
-        commands.push(Command::Layout(LayoutCommand::Theme(ThemeName::Toggle)));
+        commands.push(Command::Window(WindowCommand::Theme(ThemeChange::Toggle)));
     }
     if let Some(welcome) = &world.status.welcome {
         let tip = format!(

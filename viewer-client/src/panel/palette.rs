@@ -4,8 +4,9 @@ use egui::{Button, Frame, Id, Key, Label, Modal, RichText, ScrollArea, TextEdit,
 
 use super::Panel;
 use super::widgets::capitalised;
-use crate::command::{Command, LayoutCommand, Switch, forms};
+use crate::command::{Command, WindowCommand, forms};
 use crate::keys::{bindings, key_name};
+use crate::value::Switch;
 use crate::value::theme;
 use crate::world::World;
 
@@ -39,7 +40,7 @@ enum Choice {
 
 impl Panel for Palette {
     fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
-        let open = world.settings.layout.palette;
+        let open = world.settings.window.palette;
         let opened = open && !self.was_open;
         self.was_open = open;
         if !open {
@@ -63,7 +64,7 @@ impl Panel for Palette {
             None => None,
         };
         if leaves || chosen.is_some() {
-            commands.push(Command::Layout(LayoutCommand::Palette(Switch::Off)));
+            commands.push(Command::Window(WindowCommand::Palette(Switch::Off)));
         }
         commands.extend(chosen);
     }
@@ -119,21 +120,22 @@ fn find(text: &str, world: &World<'_>) -> Vec<Entry> {
         let name = name.to_lowercase();
         words.iter().all(|word| name.contains(word.as_str()))
     };
-    let keys = bindings(world.settings.layout.keys);
+    let keys = bindings(world.settings.window.keys);
     for binding in keys.into_iter().filter(|binding| fits(binding.help)) {
-        let choice = Choice::Run((binding.command)(world));
+        let choice = Choice::Run(binding.command(world));
         let (name, note) = (capitalised(binding.help), key_name(binding.shortcut));
         found.push(Entry { name, note, choice });
     }
-    for (form, meaning) in forms().filter(|(form, meaning)| fits(&format!("{form} {meaning}"))) {
-        // The words before the first parameter.
-        let plain = |word: &&str| word.chars().all(|c| c.is_ascii_lowercase());
-        let verb = form.split(' ').take_while(plain).collect::<Vec<_>>().join(" ");
-        let choice = match form.parse::<Command>() {
+    for form in forms() {
+        let (note, name) = (form.text(), form.help());
+        if !fits(&format!("{note} {name}")) {
+            continue;
+        }
+        let choice = match form.words.parse::<Command>() {
             Ok(command) => Choice::Run(command),
-            Err(_) => Choice::Complete(format!("{verb} ")),
+            Err(_) => Choice::Complete(format!("{} ", form.words)),
         };
-        found.push(Entry { name: capitalised(meaning), note: form.to_owned(), choice });
+        found.push(Entry { name, note, choice });
     }
     found
 }
@@ -149,7 +151,7 @@ mod tests {
     /// What is asked for after this was typed and Enter was pressed.
     fn typed(text: &str) -> Vec<Command> {
         let mut stage = Stage::new(Palette::default());
-        stage.settings.layout.palette = true;
+        stage.settings.window.palette = true;
         let mut harness = stage.harness();
         harness.run_steps(3);
         harness.get_by_role(egui::accesskit::Role::TextInput).type_text(text);
@@ -161,7 +163,7 @@ mod tests {
 
     #[test]
     fn keys_and_whole_commands_are_found_by_typing() {
-        let closed = || Command::Layout(LayoutCommand::Palette(Switch::Off));
+        let closed = || Command::Window(WindowCommand::Palette(Switch::Off));
         let clear = Command::Cloud(CloudCommand::Clear);
         assert_eq!(typed("FORGET path"), [closed(), clear], "a key by words of its meaning");
         let width = Command::Cloud(CloudCommand::Width(3.0));
@@ -173,7 +175,7 @@ mod tests {
     #[test]
     fn an_empty_line_shows_what_there_is() {
         let mut stage = Stage::new(Palette::default());
-        stage.settings.layout.palette = true;
+        stage.settings.window.palette = true;
         let mut harness = stage.harness();
         harness.run_steps(3);
         assert!(shows(&harness, "Look through the render camera"), "a key");

@@ -2,11 +2,14 @@
 
 use egui::{FontFamily, Label, RichText, Sense, Slider, Ui};
 
-use super::Panel;
-use super::widgets::{Scale, dot, row, slider};
-use crate::command::{Command, PlayCommand, Switch};
+use super::widgets::{dot, number, row};
+use super::{Panel, Section};
+use crate::command::{Command, PlayCommand, form};
+use crate::keys::Group;
 use crate::source::dump::{Outcome, Stage, Step};
 use crate::source::playback::Playback;
+use crate::value::PanelName;
+use crate::value::Switch;
 use crate::value::format;
 use crate::value::theme;
 use crate::world::World;
@@ -15,14 +18,14 @@ use crate::world::World;
 const MOST_WARNINGS: usize = 5;
 
 /// The controls of a file of paths; blank without one.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct PlaybackPanel;
 
 impl Panel for PlaybackPanel {
     fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
         let Some(playback) = world.playback else { return };
         transport(ui, playback, commands);
-        scrubber(ui, playback, commands);
+        scrubber(ui, world, playback, commands);
         if let Some(step) = playback.step() {
             describe(ui, playback.stage(), step);
         }
@@ -32,6 +35,25 @@ impl Panel for PlaybackPanel {
         }
         ui.add_space(6.0);
         tally(ui, playback.stage());
+    }
+}
+
+impl Section for PlaybackPanel {
+    const NAME: PanelName = PanelName::Playback;
+    const TITLE: &'static str = "Playback";
+    const HELP: &'static [&'static str] =
+        &["Plays the file of paths; drag the line to go to any step."];
+    const KEYS: &'static [Group] = &[Group::Explorer];
+
+    fn applies(world: &World<'_>) -> bool {
+        world.playback.is_some()
+    }
+
+    fn text(world: &World<'_>) -> String {
+        world.playback.map_or_else(String::new, |playback| {
+            let (step, steps) = playback.place();
+            format!("step {step} of {steps}\n")
+        })
     }
 }
 
@@ -59,7 +81,7 @@ fn transport(ui: &mut Ui, playback: &Playback, commands: &mut Vec<Command>) {
     ui.label(RichText::new(text).weak());
 }
 
-fn scrubber(ui: &mut Ui, playback: &Playback, commands: &mut Vec<Command>) {
+fn scrubber(ui: &mut Ui, world: &World<'_>, playback: &Playback, commands: &mut Vec<Command>) {
     let (position, count) = playback.place();
     let mut there = position;
     ui.spacing_mut().slider_width = (ui.available_width() - 8.0).max(60.0);
@@ -68,9 +90,9 @@ fn scrubber(ui: &mut Ui, playback: &Playback, commands: &mut Vec<Command>) {
     if there != position {
         commands.push(Command::Play(PlayCommand::To(u32::try_from(there).unwrap_or(u32::MAX))));
     }
-    let scale = Scale::logarithmic(0.1..=500.0, 1).suffix(" /s");
-    if let Some(rate) = slider(ui, "Pace", "Steps a second", playback.rate(), scale) {
-        commands.push(Command::Play(PlayCommand::Rate(rate)));
+    let rate = f64::from(playback.rate());
+    if let Some(rate) = number(ui, world, "Pace", form("play rate"), rate) {
+        commands.push(Command::Play(PlayCommand::Rate(rate as f32)));
     }
 }
 

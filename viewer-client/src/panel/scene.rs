@@ -2,53 +2,32 @@
 
 use egui::{Button, RichText, Ui};
 
-use super::Panel;
-use super::widgets::{Scale, choice, row, slider, toggle};
-use crate::command::{
-    CameraCommand, ClipSide, Command, Light, Lighting, SceneCommand, Shading, Switch,
-};
-use crate::value::format;
+use super::lines::Lines;
+use super::widgets::{row, setting};
+use super::{Panel, Section};
+use crate::command::{CameraCommand, Command, SceneCommand, SceneSettings};
+use crate::keys::Group;
+use crate::value::PanelName;
+use crate::value::{ClipSide, Light, Shading, Switch, format};
 use crate::world::World;
 
 /// The settings of the view.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Scene;
 
 impl Panel for Scene {
     fn ui(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
-        let scene = &world.settings.scene;
-        let mut push = |command| commands.push(Command::Scene(command));
-        let tip = "Lit with textures, lit in plain colours, textures alone, with edges, or not (Z)";
-        if let Some(shading) = choice(ui, "Surfaces", tip, scene.shading, &Shading::ALL) {
-            push(SceneCommand::Shading(shading));
+        use SceneSettings as Look;
+        setting(ui, world, &Look::shading(), commands);
+        light(ui, world, commands);
+        setting(ui, world, &Look::opacity(), commands);
+        setting(ui, world, &Look::cutaway(), commands);
+        setting(ui, world, &Look::clip(), commands);
+        if world.settings.scene.clip != ClipSide::Off {
+            setting(ui, world, &Look::cut(), commands);
         }
-        light(ui, world, &mut push);
-        let tip = "Below 1, paths inside and behind are seen through surfaces (X)";
-        if let Some(x) = slider(ui, "Opacity", tip, scene.opacity, Scale::linear(0.0..=1.0, 2)) {
-            push(SceneCommand::Opacity(x));
-        }
-        let tip = "Surfaces seen from behind become glass, so that one looks into rooms (B)";
-        if let Some(switch) = toggle(ui, "Cut away backs", tip, scene.cutaway) {
-            push(SceneCommand::Cutaway(switch));
-        }
-        let tip = "A plane that cuts away what lies before it along an axis";
-        if let Some(side) = choice(ui, "Clip", tip, scene.clip, &ClipSide::ALL) {
-            push(SceneCommand::Clip(side));
-        }
-        if scene.clip != ClipSide::Off {
-            let tip = "Where the plane lies across the scene";
-            if let Some(x) = slider(ui, "Cut at", tip, scene.cut, Scale::linear(0.0..=1.0, 2)) {
-                push(SceneCommand::Cut(x));
-            }
-        }
-        let tip = "A wireframe model where the picture is taken from";
-        if let Some(switch) = toggle(ui, "Camera model", tip, scene.aids.camera) {
-            push(SceneCommand::Camera(switch));
-        }
-        if let Some(switch) = toggle(ui, "Grid", "The ground below the scene (G)", scene.aids.grid)
-        {
-            push(SceneCommand::Grid(switch));
-        }
+        setting(ui, world, &Look::camera(), commands);
+        setting(ui, world, &Look::grid(), commands);
         ui.add_space(4.0);
         views(ui, world, commands);
         if let Some(model) = world.model {
@@ -63,23 +42,36 @@ impl Panel for Scene {
     }
 }
 
+impl Section for Scene {
+    const NAME: PanelName = PanelName::Scene;
+    const TITLE: &'static str = "Scene";
+    const HELP: &'static [&'static str] = &[
+        "How surfaces are drawn. Make them transparent, cut the scene open, or leave edges alone \
+         to see the paths behind them.",
+    ];
+    const KEYS: &'static [Group] = &[Group::Camera];
+
+    fn text(world: &World<'_>) -> String {
+        world.settings.scene.commands().into_iter().collect::<Lines>().text()
+    }
+}
+
 /// The light of the preview, which has nothing to do with the lights of the scene.
-fn light(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(SceneCommand)) {
+fn light(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     let scene = &world.settings.scene;
     if matches!(scene.shading, Shading::Texture | Shading::Off | Shading::Wireframe) {
         return;
     }
-    let tip = "Soft: a sky, too, so that nothing is black. Phong: one point light, as in 2014";
-    if let Some(lighting) = choice(ui, "Lighting", tip, scene.lighting, &Lighting::ALL) {
-        push(SceneCommand::Lighting(lighting));
-    }
-    row(ui, "Light", "Where the preview is lit from; its lamps stay as they are", |ui| {
+    setting(ui, world, &SceneSettings::lighting(), commands);
+    let form = SceneSettings::light().form;
+    row(ui, form.label, &form.help(), |ui| {
         let at_eye = scene.light == Light::Camera;
+        let mut push = |light| commands.push(Command::Scene(SceneCommand::Light(light)));
         let camera = ui
             .add(Button::new("At the eye").selected(at_eye))
             .on_hover_text("It goes wherever you look from");
         if camera.clicked() {
-            push(SceneCommand::Light(Light::Camera));
+            push(Light::Camera);
         }
         let place = ui
             .add(Button::new("In the scene").selected(!at_eye))
@@ -88,7 +80,7 @@ fn light(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(SceneCommand)) {
             let bounds = world.camera.bounds();
             let above = bounds.centre() + 0.6 * bounds.radius() * world.camera.up();
             let place = world.names().world(above.into());
-            push(SceneCommand::Light(Light::At(place.to_array())));
+            push(Light::At(place.to_array()));
         }
     });
 }

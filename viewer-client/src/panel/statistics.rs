@@ -3,16 +3,18 @@
 use common::{Statistics, StrategyStatistics};
 use egui::{Align, Color32, Label, Layout, RichText, Sense, Ui, vec2};
 
-use super::Panel;
 use super::hover::{self, Pointed};
+use super::lines::Lines;
 use super::widgets::{dot, empty_state, mark, reading, sparkline};
+use super::{Panel, Section};
 use crate::command::Command;
+use crate::value::PanelName;
 use crate::value::format;
 use crate::value::theme;
 use crate::world::World;
 
 /// Live counts.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct StatisticsPanel;
 
 impl Panel for StatisticsPanel {
@@ -37,6 +39,51 @@ impl Panel for StatisticsPanel {
         strategies(ui, world, statistics);
         ui.add_space(6.0);
         totals(ui, world, statistics);
+    }
+}
+
+impl Section for StatisticsPanel {
+    const NAME: PanelName = PanelName::Statistics;
+    const TITLE: &'static str = "Statistics";
+    const HELP: &'static [&'static str] = &[
+        "Counts of all chains since the epoch began. For each strategy: how often it was chosen, \
+         how often it made a whole path, and how often the chain moved there.",
+    ];
+
+    fn applies(world: &World<'_>) -> bool {
+        world.has_chains()
+    }
+
+    fn text(world: &World<'_>) -> String {
+        let mut lines = Lines::default();
+        let Some(statistics) = &world.status.statistics else { return lines.text() };
+        lines.put(format_args!("mutations a second\t{:.0}", world.status.mutation_rate()));
+        let (b, error) = (statistics.normalization, statistics.normalization_error);
+        lines.put(format_args!("b\t{b:.8}\t±\t{error:.2e}"));
+        lines.put(format_args!("strategy\tproposed\tgenerated\taccepted\tmean acceptance"));
+        for (index, strategy) in statistics.strategies.iter().enumerate() {
+            let mean = strategy.acceptance_sum / strategy.proposed.max(1) as f64;
+            let name = world.strategy_name(index);
+            let (proposed, generated) = (strategy.proposed, strategy.generated);
+            lines.put(format_args!(
+                "{name}\t{proposed}\t{generated}\t{}\t{mean:.5}",
+                strategy.accepted
+            ));
+            for failure in &strategy.failures {
+                let reason = world.failure_reason(usize::from(failure.reason));
+                lines.put(format_args!("\t{}\t{reason}", failure.count));
+            }
+        }
+        let totals = statistics.totals;
+        lines.put(format_args!(
+            "steps\t{}\trays\t{}\tshadow rays\t{}",
+            totals.steps, totals.rays, totals.shadow_rays
+        ));
+        lines.put(format_args!(
+            "not finite\t{}\tlongest stay\t{}",
+            totals.not_finite, totals.longest_dwell
+        ));
+        lines.text()
     }
 }
 

@@ -2,15 +2,17 @@
 
 use std::time::Duration;
 
-use common::{Queue, Statistics};
+use common::{Queue, Role, Statistics};
 use egui::{Align, Label, Layout, RichText, Sense, Ui};
 
 use super::Panel;
+use super::lines::Lines;
 use super::widgets::dot;
-use crate::command::{Command, DeskCommand, LayoutCommand, Source, Switch};
+use crate::command::{Command, DesktopCommand, SessionCommand, WindowCommand};
 use crate::source::status::{LinkState, SILENCE, Status};
 use crate::value::format;
 use crate::value::theme;
+use crate::value::{Part, Switch};
 use crate::world::World;
 
 /// The state of the connection in one line.
@@ -29,7 +31,7 @@ impl Panel for StatusBar {
                 let keys =
                     ui.button("F1  Keys").on_hover_text("Every key and mouse button (F1, ?)");
                 if keys.clicked() {
-                    commands.push(Command::Layout(LayoutCommand::Help(Switch::Toggle)));
+                    commands.push(Command::Window(WindowCommand::Help(Switch::Toggle)));
                 }
                 // What was true when the daemon spoke last.
                 ui.add_enabled_ui(answers, |ui| figures(ui, world));
@@ -37,7 +39,7 @@ impl Panel for StatusBar {
         });
         bar.response.interact(Sense::click()).context_menu(|ui| {
             if ui.button("Copy as text").clicked() {
-                commands.push(Command::Desk(DeskCommand::Copy(Source::Status)));
+                commands.push(Command::Desktop(DesktopCommand::Copy(Part::Status)));
                 ui.close();
             }
         });
@@ -48,6 +50,10 @@ fn connection(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     let status = world.status;
     let place = place(status);
     match &status.link {
+        LinkState::Idle => {
+            dot(ui, ui.visuals().weak_text_color());
+            ui.add(Label::new("Nothing to look at").selectable(false));
+        }
         LinkState::Connected => {
             let playing = world.playback.is_some();
             if !playing {
@@ -81,7 +87,7 @@ fn connection(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
             let text = format!("Disconnected: {reason}; retrying in {seconds:.0} s");
             ui.add(Label::new(text).selectable(false).truncate());
             if ui.small_button("Now").on_hover_text("Connect now (R)").clicked() {
-                commands.push(Command::Reconnect);
+                commands.push(Command::Session(SessionCommand::Reconnect));
             }
         }
     }
@@ -146,8 +152,8 @@ fn figures(ui: &mut Ui, world: &World<'_>) {
         let waiting = format::bytes(statistics.queued_bytes);
         figure(ui, "waiting", &waiting, &waiting_where(statistics));
     }
-    let bytes = format::bytes(world.status.byte_rate.per_second() as u64);
-    let paths = format::count(world.status.path_rate.per_second());
+    let bytes = format::bytes(world.store.byte_rate() as u64);
+    let paths = format::count(world.store.path_rate());
     figure(ui, "paths/s", &paths, &format!("Paths received a second, {bytes}/s"));
     if let Some(latency) = world.status.latency.filter(|_| world.status.is_connected()) {
         let milliseconds = 1e3 * latency.as_secs_f32();
@@ -179,4 +185,38 @@ fn figure(ui: &mut Ui, name: &str, value: &str, tip: &str) {
     ui.add_space(4.0);
     ui.add(Label::new(RichText::new(value).monospace()).selectable(false)).on_hover_text(tip);
     ui.add(Label::new(RichText::new(name).weak()).selectable(false)).on_hover_text(tip);
+}
+
+/// The state of the session, as text for the clipboard.
+pub(super) fn text(world: &World<'_>) -> String {
+    let status = world.status;
+    let mut lines = Lines::default();
+    lines.put(format_args!("daemon\t{}", status.address));
+    match &status.link {
+        LinkState::Idle => lines.put(format_args!("state\tidle")),
+        LinkState::Connected => lines.put(format_args!("state\tconnected")),
+        LinkState::Connecting => lines.put(format_args!("state\tconnecting")),
+        LinkState::Disconnected { reason, .. } => {
+            lines.put(format_args!("state\tdisconnected: {reason}"));
+        }
+    }
+    if let Some(welcome) = &status.welcome {
+        lines.put(format_args!("scene\t{}\t{}", welcome.scene_name, welcome.scene_hash));
+        lines.put(format_args!("session\t{}\tdaemon {}", welcome.session, welcome.server_version));
+        let role = if status.role() == Role::Driver { "driver" } else { "observer" };
+        lines.put(format_args!("role\t{role}"));
+    }
+    if let Some(latency) = status.latency {
+        lines.put(format_args!("latency\t{:.2} ms", 1e3 * latency.as_secs_f64()));
+    }
+    if let Some(statistics) = &status.statistics {
+        lines.put(format_args!("mutations a second\t{:.0}", status.mutation_rate()));
+        lines.put(format_args!("paths dropped\t{}", statistics.paths_dropped));
+        lines.put(format_args!("daemon's memory\t{}", format::bytes(statistics.memory_bytes)));
+    }
+    lines.put(format_args!(
+        "viewer's memory for paths\t{}",
+        format::bytes(world.store.byte_len() as u64)
+    ));
+    lines.text()
 }

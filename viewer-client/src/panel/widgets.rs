@@ -1,15 +1,15 @@
 //! Small parts that panels share.
 
-use std::fmt::Display;
-use std::ops::RangeInclusive;
-
 use egui::{
-    Align, Color32, ComboBox, Label, Layout, Rect, Response, RichText, ScrollArea, Sense, Slider,
-    Stroke, StrokeKind, TextWrapMode, Ui, WidgetText, pos2, vec2,
+    Align, Color32, ComboBox, Id, Label, Layout, Rect, Response, RichText, ScrollArea, Sense,
+    Slider, Stroke, StrokeKind, TextWrapMode, Ui, WidgetText, pos2, vec2,
 };
 
-use crate::command::Switch;
-use crate::value::theme;
+use crate::command::{Command, Form, Setting};
+use crate::keys::keys_of;
+use crate::settings::Group;
+use crate::value::{Choice, Exposure, Number as _, Range, Settable, Switch, theme};
+use crate::world::World;
 
 /// Width of the labels of a form in points.
 const LABEL_WIDTH: f32 = 74.0;
@@ -20,91 +20,157 @@ const LOWEST: f32 = 80.0;
 
 /// A label and what belongs to it, in one line.
 pub(super) fn row<R>(ui: &mut Ui, label: &str, tip: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
+    row_explained(ui, label, |ui| drop(ui.label(tip)), |ui, _| add(ui))
+}
+
+/// A label with an explanation that is made when somebody points at it, and what belongs to it; the
+/// label's id names that to those who do not see it.
+fn row_explained<R>(
+    ui: &mut Ui,
+    label: &str,
+    explain: impl FnOnce(&mut Ui),
+    add: impl FnOnce(&mut Ui, Id) -> R,
+) -> R {
     ui.horizontal(|ui| {
         let size = vec2(LABEL_WIDTH, ui.spacing().interact_size.y);
-        ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+        let label = ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
             ui.set_min_width(LABEL_WIDTH);
-            ui.add(Label::new(label).selectable(false).sense(Sense::hover())).on_hover_text(tip);
+            let label = Label::new(label).selectable(false).sense(Sense::hover());
+            ui.add(label).on_hover_ui(explain).id
         });
-        add(ui)
+        add(ui, label.inner)
     })
     .inner
 }
 
-/// How a slider turns places into values.
-#[derive(Clone, Debug)]
-pub(super) struct Scale {
-    pub(super) range: RangeInclusive<f32>,
-    pub(super) logarithmic: bool,
-    pub(super) decimals: usize,
-    pub(super) suffix: &'static str,
+/// A row for a setting, as its table has it; adds the command that the user's hand means.
+pub(super) fn setting<G: Group, T: Control>(
+    ui: &mut Ui,
+    world: &World<'_>,
+    setting: &Setting<G, T>,
+    commands: &mut Vec<Command>,
+) {
+    let value = setting.value(world.settings);
+    commands.extend(value.control(ui, setting.form, world).map(setting.set));
 }
 
-impl Scale {
-    pub(super) const fn linear(range: RangeInclusive<f32>, decimals: usize) -> Self {
-        Self { range, logarithmic: false, decimals, suffix: "" }
-    }
+/// A number that is no setting, with the range and the explanation of the command that changes it.
+pub(super) fn number(
+    ui: &mut Ui,
+    world: &World<'_>,
+    label: &str,
+    form: &'static Form,
+    value: f64,
+) -> Option<f64> {
+    let range = form.range()?;
+    slider(ui, label, value, &range, |ui| explain(ui, form, world))
+}
 
-    pub(super) const fn logarithmic(range: RangeInclusive<f32>, decimals: usize) -> Self {
-        Self { range, logarithmic: true, decimals, suffix: "" }
-    }
-
-    pub(super) const fn suffix(self, suffix: &'static str) -> Self {
-        Self { suffix, ..self }
+/// What a command does, and the keys for it.
+fn explain(ui: &mut Ui, form: &Form, world: &World<'_>) {
+    ui.label(form.help());
+    let keys = keys_of(form, world);
+    if !keys.is_empty() {
+        ui.label(RichText::new(keys.join("  ")).monospace().strong());
     }
 }
 
-/// A labelled slider; answers the new value when the user moved it.
-pub(super) fn slider(ui: &mut Ui, label: &str, tip: &str, value: f32, scale: Scale) -> Option<f32> {
-    let mut moved = value;
-    let response = row(ui, label, tip, |ui| {
-        // Long numbers take their room from the slider: a row that is too wide would widen its panel
-        // with every frame.
-        let letters = format!("{value:.*}", scale.decimals).len() + scale.suffix.len();
-        let number = (8.0 * letters as f32 + 28.0).max(74.0);
-        ui.spacing_mut().slider_width = (ui.available_width() - number).max(30.0);
-        ui.add(
-            Slider::new(&mut moved, scale.range)
-                .logarithmic(scale.logarithmic)
-                .fixed_decimals(scale.decimals)
-                .suffix(scale.suffix),
-        )
-    });
-    // A slider also rounds and clamps by itself; only the user's hand counts.
-    let by_hand = response.changed() && moved != value;
-    response.on_hover_text(tip);
-    by_hand.then_some(moved)
+/// A value that a row of a panel can show and change.
+pub(super) trait Control: Settable {
+    /// Shows it; answers the change when the user's hand made one.
+    fn control(&self, ui: &mut Ui, form: &'static Form, world: &World<'_>) -> Option<Self::Change>;
 }
 
-/// A checkbox; answers the switch to throw when the user clicked it.
+macro_rules! numbers {
+    ($($type:ty),+) => {$(
+        impl Control for $type {
+            fn control(&self, ui: &mut Ui, form: &'static Form, world: &World<'_>) -> Option<Self> {
+                number(ui, world, form.label, form, self.to_f64()).map(Self::from_f64)
+            }
+        }
+    )+};
+}
+
+numbers!(f32, u16, u32);
+
+impl Control for Exposure {
+    fn control(&self, ui: &mut Ui, form: &'static Form, world: &World<'_>) -> Option<f32> {
+        self.stops().control(ui, form, world)
+    }
+}
+
+impl Control for bool {
+    fn control(&self, ui: &mut Ui, form: &'static Form, world: &World<'_>) -> Option<Switch> {
+        let mut clicked = *self;
+        let response = ui.checkbox(&mut clicked, form.label);
+        let changed = response.changed();
+        response.on_hover_ui(|ui| explain(ui, form, world));
+        changed.then(|| Switch::to(clicked))
+    }
+}
+
+impl<T: Choice + Settable<Change = T>> Control for T {
+    fn control(&self, ui: &mut Ui, form: &'static Form, world: &World<'_>) -> Option<T> {
+        let mut chosen = *self;
+        row_explained(
+            ui,
+            form.label,
+            |ui| explain(ui, form, world),
+            |ui, label| {
+                ComboBox::from_id_salt(form.words)
+                    .selected_text(self.label())
+                    .width(ui.available_width() - 10.0)
+                    .show_ui(ui, |ui| {
+                        for choice in T::VARIANTS {
+                            ui.selectable_value(&mut chosen, *choice, choice.label())
+                                .on_hover_text(choice.meaning());
+                        }
+                    })
+                    .response
+                    .labelled_by(label)
+                    .on_hover_text(self.meaning());
+            },
+        );
+        (chosen != *self).then_some(chosen)
+    }
+}
+
+/// A checkbox for what is no setting; answers the switch to throw when the user clicked it.
 pub(super) fn toggle(ui: &mut Ui, label: &str, tip: &str, value: bool) -> Option<Switch> {
     let mut clicked = value;
     let response = ui.checkbox(&mut clicked, label).on_hover_text(tip);
     response.changed().then(|| Switch::to(clicked))
 }
 
-/// A labelled list of choices; answers the new one when the user chose it.
-pub(super) fn choice<T: Copy + PartialEq + Display>(
+/// A labelled slider; answers the new value when the user moved it.
+fn slider(
     ui: &mut Ui,
     label: &str,
-    tip: &str,
-    value: T,
-    choices: &[T],
-) -> Option<T> {
-    row(ui, label, tip, |ui| {
-        let mut chosen = value;
-        ComboBox::from_id_salt(label)
-            .selected_text(capitalised(&value.to_string()))
-            .width(ui.available_width() - 10.0)
-            .show_ui(ui, |ui| {
-                for choice in choices {
-                    ui.selectable_value(&mut chosen, *choice, capitalised(&choice.to_string()));
-                }
-            })
-            .response
-            .on_hover_text(tip);
-        (chosen != value).then_some(chosen)
-    })
+    value: f64,
+    range: &Range<f64>,
+    explain: impl Fn(&mut Ui),
+) -> Option<f64> {
+    let mut moved = value;
+    let suffix = if range.unit.is_empty() { String::new() } else { format!(" {}", range.unit) };
+    let response = row_explained(ui, label, &explain, |ui, label| {
+        // Long numbers take their room from the slider: a row that is too wide would widen its panel
+        // with every frame.
+        let letters = format!("{value:.*}", range.decimals).len() + suffix.len();
+        let number = (8.0 * letters as f32 + 28.0).max(74.0);
+        ui.spacing_mut().slider_width = (ui.available_width() - number).max(30.0);
+        ui.add(
+            Slider::new(&mut moved, range.low..=range.high)
+                .logarithmic(range.logarithmic)
+                .fixed_decimals(range.decimals)
+                .suffix(suffix),
+        )
+        .labelled_by(label)
+    });
+    // A slider also rounds and clamps by itself; only the user's hand counts. No setting has more digits
+    // than these.
+    let by_hand = response.changed() && moved as f32 != value as f32;
+    response.on_hover_ui(explain);
+    by_hand.then_some(moved)
 }
 
 /// What a menu holds; it scrolls where the window is too low for it below the bar of menus.

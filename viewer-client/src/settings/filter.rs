@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use common::{Filter, FilterError, FilterScene, FilterText, SelectorKind};
 
-use crate::command::{FilterCommand, MOST_KEPT, MOST_SELECTORS, Sphere};
+use crate::command::{FilterCommand, MOST_KEPT};
+use crate::value::{MOST_SELECTORS, Sphere};
 
 /// Which paths are shown: text, spheres and kept filters, and the one filter that they make together.
 ///
@@ -214,10 +215,10 @@ impl FilterSettings {
                 self.chosen = None;
             }
             FilterCommand::Keep(name) => self.keep(name),
-            FilterCommand::Use(name, switch) => {
+            FilterCommand::Use(switch, name) => {
                 self.named(name).into_iter().for_each(|kept| switch.apply(&mut kept.on));
             }
-            FilterCommand::Reverse(name, switch) => {
+            FilterCommand::Reverse(switch, name) => {
                 self.named(name).into_iter().for_each(|kept| switch.apply(&mut kept.inverted));
             }
             FilterCommand::Load(name) => self.load(name),
@@ -350,7 +351,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::command::Switch;
+    use crate::value::Switch;
 
     fn set(text: &str) -> FilterCommand {
         FilterCommand::Set(FilterText::read(text))
@@ -379,7 +380,7 @@ mod tests {
             set("edges == 2 or dwell > 3"),
             FilterCommand::Keep("mine".to_owned()),
             set("chain == 1"),
-            FilterCommand::Use("mine".to_owned(), Switch::On),
+            FilterCommand::Use(Switch::On, "mine".to_owned()),
         ] {
             settings.apply(&command);
         }
@@ -397,7 +398,7 @@ mod tests {
         let mut settings = FilterSettings::default();
         settings.fit(Some(scene(&["glass", "wall"])));
         let kept = FilterCommand::Keep("walls".to_owned());
-        let used = FilterCommand::Use("walls".to_owned(), Switch::On);
+        let used = FilterCommand::Use(Switch::On, "walls".to_owned());
         for command in [set("any on material wall"), kept, used, set("any on material glass")] {
             settings.apply(&command);
         }
@@ -435,7 +436,7 @@ mod tests {
         let mut settings = FilterSettings::default();
         let text = FilterText::read("any near sphere(0, 0, 0, 1)");
         settings.keep_all(&[KeptFilter::new("newer".to_owned(), text.clone(), false)]);
-        settings.apply(&FilterCommand::Use("newer".to_owned(), Switch::On));
+        settings.apply(&FilterCommand::Use(Switch::On, "newer".to_owned()));
         assert!(settings.whole().wants_all(), "it asks for nothing");
         assert!(settings.kept()[0].complaint().is_some(), "and is marked");
         settings.apply(&FilterCommand::Load("newer".to_owned()));

@@ -1,44 +1,30 @@
-//! What the window holds, and where.
+//! Where the panels of the window are.
 
-use crate::command::{LayoutCommand, Move, PanelName, ThemeName, WindowSide};
-use crate::keys::{KeyPreset, MousePreset};
+use serde::{Deserialize, Deserializer, Serialize};
 
-/// What the window holds.
-#[expect(clippy::struct_excessive_bools, reason = "switches of one window")]
-#[derive(Clone, Debug, PartialEq, Eq)]
+use crate::command::LayoutCommand;
+use crate::value::{Move, PanelName, WIDTHS, WindowSide};
+
+/// Where the panels of the window are, and which are open.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(default)]
 pub struct Layout {
-    /// Which panels are open, in the order of [`PanelName::ALL`].
-    pub open: [bool; PanelName::ALL.len()],
-    /// Which of them are nothing but their heading.
-    pub folded: [bool; PanelName::ALL.len()],
     /// All panels from the top of the left side on; where the left side ends, see [`Self::left`].
-    pub order: [PanelName; PanelName::ALL.len()],
-    /// Which of them are on the left side.
-    pub left: [bool; PanelName::ALL.len()],
+    #[serde(deserialize_with = "known")]
+    order: Vec<PanelName>,
+    /// Those on the left side.
+    #[serde(deserialize_with = "known")]
+    left: Vec<PanelName>,
+    /// Those that are not open.
+    #[serde(deserialize_with = "known")]
+    closed: Vec<PanelName>,
+    /// Those that are nothing but their heading.
+    #[serde(deserialize_with = "known")]
+    folded: Vec<PanelName>,
     /// Widths of the left and of the right side in points, within [`WIDTHS`].
-    pub widths: [u16; 2],
-    /// What dragging with the mouse does to the camera.
-    pub mouse: MousePreset,
-    /// Light on dark.
-    pub dark: bool,
-    /// The sheet of keys is open.
-    pub help: bool,
-    /// Which keys there are.
-    pub keys: KeyPreset,
-    /// Others see where this viewer looks, and its filter.
-    pub seen: bool,
-    /// The palette of commands is open.
-    pub palette: bool,
-    /// The first steps are shown.
-    pub hint: bool,
-    /// Size of texts and buttons in percent, within [`SCALES`].
-    pub scale: u16,
+    widths: [u16; 2],
 }
 
-/// Sizes of the interface in percent.
-pub const SCALES: std::ops::RangeInclusive<u16> = 50..=300;
-/// Widths of a side in points.
-pub const WIDTHS: std::ops::RangeInclusive<u16> = 200..=900;
 /// Usual widths of the sides: what their widest rows need.
 const USUAL_WIDTHS: [u16; 2] = [276, 380];
 /// What the view keeps of the window's width, in points; in a small window, [`VIEW_SHARE`] of it.
@@ -47,45 +33,81 @@ const VIEW_SHARE: f32 = 0.4;
 
 impl Default for Layout {
     fn default() -> Self {
-        let open = [true; PanelName::ALL.len()];
+        let left = PanelName::ALL.into_iter().filter(|name| name.is_usually_left());
         Self {
-            open,
-            folded: [false; PanelName::ALL.len()],
-            order: PanelName::ALL,
-            left: PanelName::ALL.map(PanelName::is_usually_left),
+            order: PanelName::ALL.to_vec(),
+            left: left.collect(),
+            closed: Vec::new(),
+            folded: Vec::new(),
             widths: USUAL_WIDTHS,
-            mouse: MousePreset::Rerun,
-            dark: true,
-            help: false,
-            keys: KeyPreset::Today,
-            seen: false,
-            palette: false,
-            hint: false,
-            scale: 100,
         }
     }
 }
 
+/// The panels of a list that there are; a file may be of a newer version.
+fn known<'de, D: Deserializer<'de>>(reader: D) -> Result<Vec<PanelName>, D::Error> {
+    let words = Vec::<String>::deserialize(reader)?;
+    Ok(words.iter().filter_map(|word| word.parse().ok()).collect())
+}
+
+/// Makes a panel one of a set, or not.
+fn change(set: &mut Vec<PanelName>, name: PanelName, is_in: bool) {
+    set.retain(|known| *known != name);
+    if is_in {
+        set.push(name);
+        // The same set is the same list, whatever was done in which order.
+        set.sort();
+    }
+}
+
 impl Layout {
+    /// This one with every panel in its place once, and widths within their limits: what was written
+    /// by an older version, or by hand, may lack some.
+    #[must_use]
+    pub fn completed(mut self) -> Self {
+        let missing: Vec<PanelName> =
+            PanelName::ALL.into_iter().filter(|name| !self.order.contains(name)).collect();
+        let is_left = |name: &PanelName| name.is_usually_left();
+        self.left.extend(missing.iter().copied().filter(is_left));
+        self.order.extend(missing);
+        let mut order = Vec::new();
+        for name in self.order {
+            if !order.contains(&name) {
+                order.push(name);
+            }
+        }
+        self.order = order;
+        for set in [&mut self.left, &mut self.closed, &mut self.folded] {
+            set.sort();
+            set.dedup();
+        }
+        for (width, usual) in self.widths.iter_mut().zip(USUAL_WIDTHS) {
+            if !WIDTHS.contains(*width) {
+                *width = usual;
+            }
+        }
+        self
+    }
+
     /// True when the panel is open.
     pub fn is_open(&self, panel: PanelName) -> bool {
-        self.open[panel as usize]
+        !self.closed.contains(&panel)
     }
 
     /// True when nothing of the panel is shown but its heading.
     pub fn is_folded(&self, panel: PanelName) -> bool {
-        self.folded[panel as usize]
+        self.folded.contains(&panel)
     }
 
     /// True when the panel belongs to the left side.
     pub fn is_left(&self, panel: PanelName) -> bool {
-        self.left[panel as usize]
+        self.left.contains(&panel)
     }
 
     /// The panels of a side from the top on, open or not.
     pub fn side(&self, side: WindowSide) -> impl Iterator<Item = PanelName> + '_ {
         let left = side == WindowSide::Left;
-        self.order.into_iter().filter(move |name| self.is_left(*name) == left)
+        self.order.iter().copied().filter(move |name| self.is_left(*name) == left)
     }
 
     /// The width of a side in points.
@@ -139,11 +161,12 @@ impl Layout {
         let neighbour = |step: isize| near.get(at?.checked_add_signed(step)?).copied();
         let before = match place {
             Move::Left | Move::Right => {
-                self.left[name as usize] = place == Move::Left;
+                change(&mut self.left, name, place == Move::Left);
                 None
             }
             Move::Before(other) => {
-                self.left[name as usize] = self.is_left(other);
+                let is_left = self.is_left(other);
+                change(&mut self.left, name, is_left);
                 Some(other)
             }
             Move::Up => match neighbour(-1) {
@@ -156,36 +179,29 @@ impl Layout {
         if before == Some(name) {
             return;
         }
-        let mut order: Vec<PanelName> = self.order.into_iter().filter(|n| *n != name).collect();
-        let index = before.and_then(|before| order.iter().position(|n| *n == before));
-        order.insert(index.unwrap_or(order.len()), name);
-        if let Ok(order) = order.try_into() {
-            self.order = order;
-        }
+        self.order.retain(|other| *other != name);
+        let index = before.and_then(|before| self.order.iter().position(|other| *other == before));
+        self.order.insert(index.unwrap_or(self.order.len()), name);
     }
 
     /// Follows a command.
     pub fn apply(&mut self, command: LayoutCommand) {
         match command {
-            LayoutCommand::Fold(name, switch) => switch.apply(&mut self.folded[name as usize]),
+            LayoutCommand::Fold(name, switch) => {
+                let mut is_folded = self.is_folded(name);
+                switch.apply(&mut is_folded);
+                change(&mut self.folded, name, is_folded);
+            }
             LayoutCommand::Arrange(name, place) => self.arrange(name, place),
             LayoutCommand::Width(side, points) => self.widths[side as usize] = points,
             LayoutCommand::Usual => {
-                let Self { order, left, widths, folded, .. } = Self::default();
-                (self.order, self.left) = (order, left);
-                (self.widths, self.folded) = (widths, folded);
+                *self = Self { closed: std::mem::take(&mut self.closed), ..Self::default() };
             }
-            LayoutCommand::Mouse(preset) => self.mouse = preset,
-            LayoutCommand::Panel(name, switch) => switch.apply(&mut self.open[name as usize]),
-            LayoutCommand::Theme(ThemeName::Dark) => self.dark = true,
-            LayoutCommand::Theme(ThemeName::Light) => self.dark = false,
-            LayoutCommand::Theme(ThemeName::Toggle) => self.dark = !self.dark,
-            LayoutCommand::Help(switch) => switch.apply(&mut self.help),
-            LayoutCommand::Keys(preset) => self.keys = preset,
-            LayoutCommand::Seen(switch) => switch.apply(&mut self.seen),
-            LayoutCommand::Palette(switch) => switch.apply(&mut self.palette),
-            LayoutCommand::Hint(switch) => switch.apply(&mut self.hint),
-            LayoutCommand::Scale(percent) => self.scale = percent,
+            LayoutCommand::Panel(name, switch) => {
+                let mut is_open = self.is_open(name);
+                switch.apply(&mut is_open);
+                change(&mut self.closed, name, !is_open);
+            }
         }
     }
 }

@@ -167,7 +167,7 @@ impl Playback {
             rgb: after.header.rgb,
             ..FocusStep::default()
         };
-        Some(Moment { before: Arc::new(focus_path(before)), step })
+        Some(Moment { before: Arc::new(focus_path(before)), step: Arc::new(step) })
     }
 }
 
@@ -199,7 +199,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::command::Switch;
+    use crate::value::Switch;
 
     fn act(step: u64, tags: &[f32]) -> Act {
         let vertex = |x: &f32| VertexRecord {

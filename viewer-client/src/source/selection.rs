@@ -6,8 +6,8 @@ use std::time::Instant;
 use common::{PathDetail, PathHeader, Rgb, SceneFrame, SceneMesh, VertexRecord, decode_normal};
 use glam::{DVec3, Vec3};
 
-use crate::command::VertexStep;
 use crate::source::store::class_name;
+use crate::value::VertexStep;
 
 /// A selected path.
 #[derive(Clone, Debug, PartialEq)]

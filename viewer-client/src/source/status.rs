@@ -1,17 +1,21 @@
 //! What is known of the daemon and of the way to it.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use common::{FilterReply, Role, Statistics, Welcome};
 
-use crate::source::steering::Steering;
+use super::steering::Steering;
+use crate::imaging::Provenance;
 use crate::value::format;
-use crate::value::rates::{History, RateMeter};
+use crate::value::rates::History;
 use crate::value::trends::Trends;
 
 /// How the connection is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkState {
+    /// Nothing is looked at.
+    Idle,
     /// There is none.
     Disconnected {
         /// What went wrong last.
@@ -48,15 +52,11 @@ pub struct Status {
     /// What the daemon said of itself.
     pub welcome: Option<Welcome>,
     /// The newest counts.
-    pub statistics: Option<Statistics>,
+    pub statistics: Option<Arc<Statistics>>,
     /// Mutations a second over the last minutes.
     pub mutation_history: History,
     /// How the chains do over time.
     pub trends: Trends,
-    /// Paths received.
-    pub path_rate: RateMeter,
-    /// Bytes of paths received.
-    pub byte_rate: RateMeter,
     /// How often the connection was made anew.
     pub reconnects: u32,
     /// The answer to the filter that was set last.
@@ -71,7 +71,12 @@ pub struct Status {
     listened: Option<Instant>,
     /// The newest word to the user.
     pub notice: Option<Notice>,
+    /// What went wrong, the oldest first.
+    failures: Vec<String>,
 }
+
+/// Failures that are kept for whoever asks.
+const MOST_FAILURES: usize = 64;
 
 /// A daemon that says nothing for so long does not answer.
 pub const SILENCE: Duration = Duration::from_secs(3);
@@ -87,8 +92,6 @@ impl Status {
             statistics: None,
             mutation_history: History::default(),
             trends: Trends::default(),
-            path_rate: RateMeter::default(),
-            byte_rate: RateMeter::default(),
             reconnects: 0,
             filter: None,
             steering: Steering::default(),
@@ -96,6 +99,7 @@ impl Status {
             heard: None,
             listened: None,
             notice: None,
+            failures: Vec::new(),
         }
     }
 
@@ -134,30 +138,62 @@ impl Status {
         self.welcome.as_ref().map_or(Role::Observer, |w| self.steering.role(w.session))
     }
 
+    /// What is known of the image besides its pixels.
+    pub fn provenance(&self) -> Provenance<'_> {
+        let mut metadata = Vec::new();
+        if let Some(welcome) = &self.welcome {
+            metadata.push(("lvis.scene", welcome.scene_name.clone()));
+            metadata.push(("lvis.scene_hash", welcome.scene_hash.clone()));
+            metadata.push(("lvis.version", welcome.server_version.clone()));
+        }
+        if let Some(statistics) = &self.statistics {
+            metadata.push(("lvis.b", statistics.normalization.to_string()));
+            let error = statistics.normalization_error;
+            metadata.push(("lvis.b_standard_error", error.to_string()));
+        }
+        Provenance {
+            scene: self.welcome.as_ref().map(|welcome| welcome.scene_name.as_str()),
+            metadata,
+            diagnostics: self.statistics.as_ref().and_then(|s| s.diagnostics.as_deref()),
+        }
+    }
+
     /// Says something to the user.
     pub fn say(&mut self, said: Result<String, String>) {
         let is_bad = said.is_err();
         let text = said.unwrap_or_else(|problem| problem);
         let text = format::sentence(&text);
+        if is_bad && self.failures.len() < MOST_FAILURES {
+            self.failures.push(text.clone());
+        }
         self.notice = Some(Notice { text, is_bad, at: Instant::now() });
     }
 
-    /// Takes a daemon's welcome; it is another daemon, or the same one anew.
+    /// What went wrong since this was asked last: for whoever has no window to read notices in.
+    pub fn take_failures(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.failures)
+    }
+
+    /// Another session begins. What was told in the one before is void; where the daemon is, how often
+    /// it was reached and what was said to the user is not.
     pub fn welcome(&mut self, welcome: Welcome) {
-        if self.welcome.is_some() {
-            self.reconnects += 1;
-        }
-        self.welcome = Some(welcome);
-        self.statistics = None;
-        self.filter = None;
-        self.latency = None;
-        self.steering.clear();
-        self.mutation_history.clear();
-        self.trends.clear();
+        let fresh = Self::new(std::mem::take(&mut self.address), self.embedded);
+        let reconnects = self.reconnects + u32::from(self.welcome.is_some());
+        *self = Self {
+            link: self.link.clone(),
+            welcome: Some(welcome),
+            reconnects,
+            heard: self.heard,
+            listened: self.listened,
+            notice: self.notice.take(),
+            failures: std::mem::take(&mut self.failures),
+            ..fresh
+        };
     }
 
     /// Takes new counts.
-    pub fn statistics(&mut self, statistics: Statistics) {
+    pub fn statistics(&mut self, statistics: impl Into<Arc<Statistics>>) {
+        let statistics = statistics.into();
         self.mutation_history.push(statistics.mutations_per_second as f32);
         self.trends.push(&statistics);
         self.statistics = Some(statistics);

@@ -38,14 +38,8 @@ impl Steering {
         self.presence.get(session).map_or(Role::Observer, |viewer| viewer.role)
     }
 
-    /// Forgets what belongs to a connection that is no more.
-    pub fn clear(&mut self) {
-        self.focus.clear();
-        self.film.clear();
-    }
-
     /// Takes in a notice.
-    pub fn take(&mut self, notice: Notice) {
+    pub fn accept(&mut self, notice: Notice) {
         match notice {
             Notice::Presence(presence) => self.presence = presence,
             Notice::Explorer(state) => self.explorer = state,
@@ -87,7 +81,7 @@ pub struct Moment {
     /// The current path before the step.
     pub before: Arc<FocusPath>,
     /// The step.
-    pub step: FocusStep,
+    pub step: Arc<FocusStep>,
 }
 
 impl Moment {
@@ -102,6 +96,8 @@ impl Moment {
 pub struct Focus {
     current: Option<Arc<FocusPath>>,
     moments: VecDeque<Moment>,
+    /// Number of the step that is shown; the newest without.
+    pub scrub: Option<u64>,
     /// Steps that came.
     pub steps: u64,
     /// Steps that never came.
@@ -119,16 +115,24 @@ impl Focus {
         &self.moments
     }
 
-    /// The step of this number, or the newest; `None` where it is not kept.
-    pub fn moment(&self, number: Option<u64>) -> Option<&Moment> {
-        let Some(number) = number else { return self.moments.back() };
+    /// The step that is shown; `None` where it is not kept.
+    pub fn moment(&self) -> Option<&Moment> {
+        match self.scrub {
+            Some(number) => self.step(number),
+            None => self.moments.back(),
+        }
+    }
+
+    /// The step of this number; `None` where it is not kept.
+    pub fn step(&self, number: u64) -> Option<&Moment> {
         let index = self.moments.partition_point(|moment| moment.step.number < number);
         self.moments.get(index).filter(|moment| moment.step.number == number)
     }
 
     /// Takes in a whole path. Where it is not the one that the explorer stood at, a walk begins, and the
     /// steps of the one before are forgotten; after missed steps, it may be the same walk.
-    pub fn take_path(&mut self, path: FocusPath) {
+    pub fn set_path(&mut self, path: impl Into<Arc<FocusPath>>) {
+        let path = path.into();
         let goes_on = match (&self.current, self.moments.back()) {
             (Some(current), _) => current.vertices == path.vertices,
             (None, Some(last)) => last.step.id.epoch == path.header.id.epoch,
@@ -137,11 +141,16 @@ impl Focus {
         if !goes_on {
             self.moments.clear();
         }
-        self.current = Some(Arc::new(path));
+        if self.moments.is_empty() {
+            // The timeline of another walk is at its end.
+            self.scrub = None;
+        }
+        self.current = Some(path);
     }
 
     /// Takes in a step. One that does not follow what is known is left out and counted as missed.
-    pub fn take_step(&mut self, step: FocusStep) {
+    pub fn add_step(&mut self, step: impl Into<Arc<FocusStep>>) {
+        let step = step.into();
         let next = self.current.as_ref().and_then(|path| path.after(&step));
         let Some((before, next)) = self.current.take().zip(next) else {
             self.missed += 1;
@@ -159,11 +168,6 @@ impl Focus {
     pub fn miss(&mut self, steps: u64) {
         self.missed = self.missed.saturating_add(steps);
         self.current = None;
-    }
-
-    /// Forgets what was; the connection is another one.
-    pub fn clear(&mut self) {
-        *self = Self::default();
     }
 }
 
@@ -209,25 +213,26 @@ pub(crate) mod tests {
     #[test]
     fn accepted_steps_move_and_others_do_not() {
         let mut focus = Focus::default();
-        focus.take_step(step(0, FocusOutcome::Accepted, 4));
+        focus.add_step(step(0, FocusOutcome::Accepted, 4));
         assert_eq!((focus.steps, focus.missed), (0, 1), "nothing to start from");
         let vertices = (0..4).map(vertex).collect();
-        focus.take_path(FocusPath { vertices, next: 1, ..FocusPath::default() });
-        focus.take_step(step(1, FocusOutcome::Rejected, 4));
-        focus.take_step(FocusStep { fan: true, ..step(2, FocusOutcome::Accepted, 4) });
+        focus.set_path(FocusPath { vertices, next: 1, ..FocusPath::default() });
+        focus.add_step(step(1, FocusOutcome::Rejected, 4));
+        focus.add_step(FocusStep { fan: true, ..step(2, FocusOutcome::Accepted, 4) });
         let current = focus.current().expect("a path");
         assert_eq!((current.vertices.len(), current.header.dwell, current.next), (4, 1, 3));
-        focus.take_step(step(3, FocusOutcome::Accepted, 4));
+        focus.add_step(step(3, FocusOutcome::Accepted, 4));
         let tags = |path: &FocusPath| path.vertices.iter().map(|v| v.primitive).collect::<Vec<_>>();
         assert_eq!(tags(focus.current().expect("a path")), [0, 103, 3], "it moved");
         assert_eq!(focus.moments().len(), 3, "all steps are kept");
         assert_eq!(focus.moments()[0].proposal().map(|p| p.len()), Some(3), "a ghost");
-        focus.take_step(step(9, FocusOutcome::Accepted, 3));
+        focus.add_step(step(9, FocusOutcome::Accepted, 3));
         assert_eq!(focus.missed, 2, "a step out of turn is left out");
         assert!(focus.current().is_none(), "a whole path is waited for");
-        assert_eq!(focus.moment(Some(2)).map(|m| m.step.fan), Some(true), "by its number");
-        assert_eq!(focus.moment(None).map(|m| m.step.number), Some(3), "the newest");
-        assert_eq!(focus.moment(Some(7)), None, "never came");
+        assert_eq!(focus.moment().map(|m| m.step.number), Some(3), "the newest");
+        assert_eq!(focus.step(2).map(|m| m.step.fan), Some(true), "by its number");
+        focus.scrub = Some(7);
+        assert_eq!(focus.moment(), None, "never came");
         focus.miss(5);
         assert_eq!(focus.missed, 7, "what is missing is counted");
     }
@@ -243,18 +248,18 @@ pub(crate) mod tests {
             next,
         };
         let mut focus = Focus::default();
-        focus.take_path(path(0, 1, 1));
-        focus.take_step(step(1, FocusOutcome::Rejected, 4));
-        focus.take_path(path(0, 2, 2));
+        focus.set_path(path(0, 1, 1));
+        focus.add_step(step(1, FocusOutcome::Rejected, 4));
+        focus.set_path(path(0, 2, 2));
         assert_eq!(focus.moments().len(), 1, "other strategies, the same path");
-        focus.take_path(path(50, 3, 2));
+        focus.set_path(path(50, 3, 2));
         assert!(focus.moments().is_empty(), "another seed");
-        focus.take_step(FocusStep { number: 2, ..step(1, FocusOutcome::Rejected, 4) });
+        focus.add_step(FocusStep { number: 2, ..step(1, FocusOutcome::Rejected, 4) });
         focus.miss(3);
-        focus.take_path(path(60, 1, 6));
+        focus.set_path(path(60, 1, 6));
         assert_eq!(focus.moments().len(), 1, "the same walk, some steps later");
         focus.miss(3);
-        focus.take_path(path(70, 2, 9));
+        focus.set_path(path(70, 2, 9));
         assert!(focus.moments().is_empty(), "another walk began meanwhile");
     }
 
@@ -262,9 +267,9 @@ pub(crate) mod tests {
     fn a_step_after_which_no_number_is_left_is_refused() {
         let mut focus = Focus::default();
         let vertices = (0..4).map(vertex).collect();
-        focus.take_path(FocusPath { vertices, next: u64::MAX, ..FocusPath::default() });
+        focus.set_path(FocusPath { vertices, next: u64::MAX, ..FocusPath::default() });
         let last = FocusStep { number: u64::MAX, ..step(0, FocusOutcome::Rejected, 4) };
-        focus.take_step(last);
+        focus.add_step(last);
         assert_eq!((focus.steps, focus.missed), (0, 1), "left out, and counted");
     }
 }

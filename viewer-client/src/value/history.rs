@@ -22,7 +22,7 @@ impl<T> Default for History<T> {
 
 impl<T> History<T> {
     /// Remembers that the state was `before` until `what` changed it at `time`.
-    pub fn note(&mut self, before: T, what: &str, time: f64) {
+    pub fn record(&mut self, before: T, what: &str, time: f64) {
         let same = self.last.as_ref().is_some_and(|(w, t)| w == what && time - t < PAUSE);
         self.last = Some((what.to_owned(), time));
         self.future.clear();
@@ -59,17 +59,17 @@ mod tests {
     #[test]
     fn steps_go_back_and_forth() {
         let mut history = History::default();
-        history.note(1, "width", 0.0);
-        history.note(2, "width", 0.5);
-        history.note(3, "colour", 0.6);
+        history.record(1, "width", 0.0);
+        history.record(2, "width", 0.5);
+        history.record(3, "colour", 0.6);
         assert_eq!(history.undo(4), Some(3), "the colour");
         assert_eq!(history.undo(3), Some(1), "the drag is one step");
         assert_eq!(history.undo(1), None, "the beginning");
         assert_eq!(history.redo(1), Some(3), "forth");
-        history.note(3, "colour", 0.7);
+        history.record(3, "colour", 0.7);
         assert_eq!(history.redo(5), None, "something new forgets what was undone");
         for i in 0..1000 {
-            history.note(i, &i.to_string(), 0.0);
+            history.record(i, &i.to_string(), 0.0);
         }
         assert_eq!(history.past.len(), MOST, "bounded");
     }

@@ -15,7 +15,7 @@ pub struct RateMeter {
 
 impl RateMeter {
     /// Notes that `count` things had come by `time` (seconds).
-    pub fn note(&mut self, time: f64, count: u64) {
+    pub fn record(&mut self, time: f64, count: u64) {
         // Ten readings a second are enough, and bound the queue.
         let recent = self.readings.iter().rev().nth(1).is_some_and(|(t, _)| time - t < 0.1);
         if recent {
@@ -75,7 +75,7 @@ mod tests {
         let mut meter = RateMeter::default();
         assert_eq!(meter.per_second(), 0.0, "nothing yet");
         for i in 0..10_000_u64 {
-            meter.note(i as f64 / 60.0, 50 * i);
+            meter.record(i as f64 / 60.0, 50 * i);
         }
         assert!((meter.per_second() - 3000.0).abs() < 1.0, "{}", meter.per_second());
         assert!(meter.readings.len() < 30, "the queue is bounded");
@@ -84,8 +84,8 @@ mod tests {
     #[test]
     fn a_count_that_starts_again_is_no_negative_rate() {
         let mut meter = RateMeter::default();
-        meter.note(0.0, 1000);
-        meter.note(1.0, 3);
+        meter.record(0.0, 1000);
+        meter.record(1.0, 3);
         assert_eq!(meter.per_second(), 0.0, "no rate");
     }
 

@@ -20,10 +20,10 @@ const MOST_LINKS: usize = 40;
 
 /// Why a file cannot be written; what was there before is as it was.
 #[derive(Debug, Error)]
-#[error("cannot write `{}`: {source}", path.display())]
+#[error("cannot write `{}`: {problem}", path.display())]
 pub struct FileError {
     path: PathBuf,
-    source: io::Error,
+    problem: io::Error,
 }
 
 /// Where a file is to go, looked at before the work starts whose result it will hold.
@@ -44,7 +44,7 @@ enum Kind {
 impl Place {
     /// Fails where a file cannot be written at `path`.
     pub fn find(path: &Path) -> Result<Self, FileError> {
-        let kind = look(path).map_err(|source| FileError { path: path.to_owned(), source })?;
+        let kind = look(path).map_err(|problem| FileError { path: path.to_owned(), problem })?;
         Ok(Self { named: path.to_owned(), kind })
     }
 
@@ -68,7 +68,7 @@ impl Place {
         &self,
         make: impl FnOnce(&mut Output) -> Result<(), E>,
     ) -> Result<(), E> {
-        let told = |source| E::from(FileError { path: self.named.clone(), source });
+        let told = |problem| E::from(FileError { path: self.named.clone(), problem });
         let mut output = self.open().map_err(told)?;
         make(&mut output)?;
         self.close(output).map_err(told)
@@ -78,7 +78,7 @@ impl Place {
     pub fn write_bytes(&self, bytes: &[u8]) -> Result<(), FileError> {
         self.write(|output| {
             let written = output.write_all(bytes);
-            written.map_err(|source| FileError { path: self.named.clone(), source })
+            written.map_err(|problem| FileError { path: self.named.clone(), problem })
         })
     }
 
@@ -121,7 +121,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
 
 /// Puts `bytes` at `path`, where there must be nothing yet; only its owner may read them.
 pub fn write_private(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
-    let told = |source| FileError { path: path.to_owned(), source };
+    let told = |problem| FileError { path: path.to_owned(), problem };
     // Such is the nature of temporary files.
     let make = || -> io::Result<()> {
         let mut file =
@@ -150,13 +150,13 @@ impl Growing {
         unfinished.push(SUFFIX);
         let unfinished = PathBuf::from(unfinished);
         let file = File::create(&unfinished)
-            .map_err(|source| FileError { path: unfinished.clone(), source })?;
+            .map_err(|problem| FileError { path: unfinished.clone(), problem })?;
         Ok(Self { place, unfinished, file })
     }
 
     /// Brings the file to its place: nothing more is to come.
     pub fn finish(self) -> Result<(), FileError> {
-        let told = |source| FileError { path: self.place.named.clone(), source };
+        let told = |problem| FileError { path: self.place.named.clone(), problem };
         let bytes = fs::read(&self.unfinished).map_err(told)?;
         self.place.write_bytes(&bytes)?;
         fs::remove_file(&self.unfinished).map_err(told)

@@ -31,7 +31,7 @@ fn what_fails_half_way_leaves_the_old_file() {
     let failure = place.write(|output| -> Result<(), FileError> {
         output.write_all(&vec![7; 1 << 16]).expect("room");
         assert_eq!(fs::read(&path).expect("readable"), b"old", "while the new one is written");
-        Err(FileError { path: path.clone(), source: io::Error::other("out of luck") })
+        Err(FileError { path: path.clone(), problem: io::Error::other("out of luck") })
     });
     assert!(failure.expect_err("told").to_string().contains("out of luck"));
     assert_eq!(fs::read(&path).expect("readable"), b"old");

@@ -1,7 +1,7 @@
 //! `film in rect(...)`: the film point lies in a rectangle.
 
-use super::{Condition, Gap, Predicate};
-use crate::filter::form::{Described, Form, NumberPart, Proposal, Spot, Unit, Walk, Word};
+use super::{Condition, Described, Form, Gap, NumberPart, Predicate, Proposal, Spot, Unit};
+use crate::filter::word::{Walk, Word};
 use crate::filter::{FilterError, FilterScene, MARGIN};
 use crate::{PathHeader, VertexRecord};
 

@@ -1,8 +1,8 @@
 //! `lpe "..."`: the sequence of events fits an expression.
 
-use super::{Condition, Predicate};
-use crate::filter::form::{Described, Form, Proposal, Spot, Walk, Word};
+use super::{Condition, Described, Form, Predicate, Proposal, Spot};
 use crate::filter::lpe::LightPathAutomaton;
+use crate::filter::word::{Walk, Word};
 use crate::filter::{FilterError, FilterScene, LightPathExpression};
 use crate::{PathHeader, VertexRecord};
 

@@ -4,21 +4,164 @@
 //! `conditions!` below and an example of its text to `docs/FILTERS.md`. Parser, printer, completion,
 //! complaints, the rows and menus of viewers and the laws that tests hold follow from it.
 //! `docs/EXTEND.md` walks through it.
+//!
+//! A condition describes itself to a [`Form`]: its words, signs, numbers and names in the order of its
+//! text. Whoever implements that trait reads it from a text, prints it, lets a user edit it or draws one
+//! at random; completion and complaints come from the reader. So none of them has to know any
+//! condition, and none can disagree with another.
 
+pub mod attribute;
 pub mod film;
 pub mod light_path;
 pub mod number;
+pub mod place;
 pub mod segment;
 pub mod strategy;
 pub mod vertex;
+pub mod volume;
 
-use std::fmt::{self, Debug, Display, Formatter};
+use std::fmt::Debug;
 
-use super::form::{Described, Form, Proposal, Spot, Walk};
-use super::parse::Leaves;
-use super::print::text_of;
-use super::{FilterError, FilterScene};
+use glam::DVec3;
+
+use super::word::{NameList, Walk, Word, Worded};
+use super::{FilterError, FilterScene, LightPathExpression, Name};
 use crate::{PathHeader, VertexRecord};
+
+use vertex::VertexTest;
+
+/// Something that describes itself to a form.
+pub trait Described {
+    /// Names every part in the order of the text. A part may decide which parts follow it: they are
+    /// read, shown and changed one after the other.
+    fn describe(&mut self, form: &mut dyn Form) -> Walk;
+}
+
+/// Whoever follows a description.
+pub trait Form {
+    /// A word that is always the same.
+    fn word(&mut self, word: &'static Word) -> Walk;
+
+    /// A sign between the other parts, with the blanks that are printed around it. What it means is
+    /// blank where nobody needs to be told.
+    fn sign(&mut self, sign: &'static str, meaning: &'static str) -> Walk;
+
+    /// One of several words, by its number; `about` tells what is chosen.
+    fn choice(&mut self, about: &'static str, words: &[Word], chosen: &mut usize) -> Walk;
+
+    /// A number.
+    fn number(&mut self, about: &NumberPart, value: &mut f64) -> Walk;
+
+    /// The name of something in the scene.
+    fn name(&mut self, list: NameList, name: &mut Name) -> Walk;
+
+    /// One or several such names, separated by commas.
+    fn names(&mut self, list: NameList, names: &mut Vec<Name>) -> Walk;
+
+    /// A light path expression in quotes.
+    fn expression(&mut self, expression: &mut LightPathExpression) -> Walk;
+
+    /// What is asked of one vertex.
+    fn vertex(&mut self, test: &mut VertexTest) -> Walk;
+
+    /// A place in what was followed so far, for [`Self::check`].
+    fn mark(&self) -> usize {
+        0
+    }
+
+    /// What is wrong with the parts since a mark, where something is.
+    fn check(&mut self, since: usize, complaint: Option<&'static str>) -> Walk;
+
+    /// Where a region lies that is asked for without telling where.
+    fn spot(&self) -> Spot {
+        Spot::default()
+    }
+}
+
+/// What a number in a condition is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NumberPart {
+    /// What it says.
+    pub about: &'static str,
+    /// The least value that makes sense beside its neighbours.
+    pub least: f64,
+    /// The largest.
+    pub most: f64,
+    /// Its unit.
+    pub unit: Unit,
+}
+
+/// What a number counts or measures, which tells in which steps it changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Whole things.
+    Count,
+    /// Lengths in the scene.
+    Length,
+    /// Coordinates on the film, where 1 is all of it.
+    Film,
+    /// Anything else.
+    Plain,
+}
+
+/// A place in a scene and a length, in the units of its file: where a new region lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spot {
+    /// The place.
+    pub centre: DVec3,
+    /// The length.
+    pub radius: f64,
+}
+
+impl Default for Spot {
+    fn default() -> Self {
+        Self { centre: DVec3::ZERO, radius: 1.0 }
+    }
+}
+
+/// Something new that a menu can offer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Proposal<T> {
+    /// The menu that it stands in, or the topmost one.
+    pub menu: Option<&'static str>,
+    /// The line of the menu.
+    pub label: String,
+    /// What it means.
+    pub meaning: &'static str,
+    /// What is made; nothing where the line only tells that there is nothing to choose.
+    pub made: Option<T>,
+}
+
+impl<T> Proposal<T> {
+    /// The same line, which makes something else of it.
+    pub(super) fn map<U>(self, make: impl FnOnce(T) -> U) -> Proposal<U> {
+        let Self { menu, label, meaning, made } = self;
+        Proposal { menu, label, meaning, made: made.map(make) }
+    }
+}
+
+/// Lets the form choose among the values of a closed set.
+pub(super) fn choose<T: Worded>(form: &mut dyn Form, value: &mut T) -> Walk {
+    let words: Vec<Word> = T::WORDS.iter().map(|&(_, word)| word).collect();
+    let mut chosen = T::WORDS.iter().position(|(known, _)| known == value).unwrap_or(0);
+    form.choice(T::ABOUT, &words, &mut chosen)?;
+    if let Some(&(found, _)) = T::WORDS.get(chosen) {
+        *value = found;
+    }
+    Ok(())
+}
+
+/// What stands at the leaves of a tree that is read.
+pub(super) trait Leaves: Described + Sized {
+    /// Something to read each kind of leaf into, with an example of its text.
+    fn kinds() -> impl Iterator<Item = (Self, &'static str)>;
+
+    /// What a leaf is, where none of them begins as the text goes on; nothing where their first words
+    /// are told.
+    fn summary() -> Option<String> {
+        None
+    }
+}
 
 /// One kind of condition. Its description is all that a parser, a printer, a user's hand on it and a
 /// random test need.
@@ -173,10 +316,4 @@ conditions! {
     Number(number::NumberCondition),
     /// One of these strategies made the path.
     Strategy(strategy::StrategyCondition),
-}
-
-impl Display for Leaf {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.write_str(&text_of(self))
-    }
 }

@@ -1,24 +1,10 @@
 //! `edges >= 4`: a number compares to another, or lies in a range.
 
-use super::{Condition, Gap, Predicate};
-use crate::filter::attribute::Attribute;
-use crate::filter::form::{
-    Described, Form, NumberPart, Proposal, Spot, Unit, Walk, Word, Worded as _, choose, words,
-};
+use super::attribute::{Attribute, Comparison};
+use super::{Condition, Described, Form, Gap, NumberPart, Predicate, Proposal, Spot, Unit, choose};
+use crate::filter::word::{Walk, Word, Worded as _};
 use crate::filter::{FilterError, FilterScene, MARGIN};
 use crate::{PathHeader, VertexRecord};
-
-words! {
-    /// How a number compares.
-    pub enum Comparison: "How it compares" {
-        AtLeast = ">=", "at least";
-        AtMost = "<=", "at most";
-        Equal = "==" or "=", "exactly";
-        Greater = ">", "more than";
-        Less = "<", "less than";
-        NotEqual = "!=", "anything but";
-    }
-}
 
 /// A number compares to another, or lies in a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -183,20 +169,5 @@ impl Predicate for NumberPredicate {
         // How much of a number is much.
         let floor = if self.attribute.is_whole() { 1.0 } else { f64::MIN_POSITIVE };
         Some(Gap { by, relative: by / asked.abs().max(floor) })
-    }
-}
-
-impl Comparison {
-    /// Whether `a` compares so to `b`.
-    #[inline]
-    fn holds(self, a: f64, b: f64) -> bool {
-        match self {
-            Self::Equal => a == b,
-            Self::NotEqual => a != b,
-            Self::Less => a < b,
-            Self::AtMost => a <= b,
-            Self::Greater => a > b,
-            Self::AtLeast => a >= b,
-        }
     }
 }

@@ -1,9 +1,9 @@
 //! `any through sphere(...)`: segments pass through a region.
 
-use super::{Condition, Gap, Predicate};
-use crate::filter::form::{Described, Form, Proposal, Spot, Walk, Word, choose};
-use crate::filter::place::{Place, least, most};
-use crate::filter::volume::{Volume, point};
+use super::place::{Place, least, most};
+use super::volume::{Volume, point};
+use super::{Condition, Described, Form, Gap, Predicate, Proposal, Spot, choose};
+use crate::filter::word::{Walk, Word};
 use crate::filter::{FilterError, FilterScene};
 use crate::{PathHeader, VertexRecord};
 

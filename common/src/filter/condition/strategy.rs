@@ -1,7 +1,7 @@
 //! `strategy == NAME`: which strategy made the path.
 
-use super::{Condition, Predicate};
-use crate::filter::form::{Described, Form, NameList, Proposal, Spot, Walk, Word, choose, words};
+use super::{Condition, Described, Form, Predicate, Proposal, Spot, choose};
+use crate::filter::word::{NameList, Walk, Word, words};
 use crate::filter::{FilterError, FilterScene, Name};
 use crate::{PathHeader, VertexRecord};
 

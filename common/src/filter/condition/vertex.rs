@@ -1,18 +1,13 @@
 //! `any on material "glass"`: something holds at vertices. To add a test at a vertex: a variant of
 //! [`VertexCheck`] with its word, and what the compiler asks for then, all in this file.
 
-use std::fmt::{self, Display, Formatter};
 use std::ops::Range;
 
-use super::{Condition, Gap, Predicate};
-use crate::filter::attribute::{is_diffuse, is_glossy, is_light, is_specular};
-use crate::filter::form::{
-    Described, Form, NameList, Proposal, Spot, Walk, Worded as _, choose, words,
-};
-use crate::filter::parse::Leaves;
-use crate::filter::place::{Place, least, most};
-use crate::filter::print::text_of;
-use crate::filter::volume::{Volume, point};
+use super::attribute::{is_diffuse, is_glossy, is_light, is_specular};
+use super::place::{Place, least, most};
+use super::volume::{Volume, point};
+use super::{Condition, Described, Form, Gap, Leaves, Predicate, Proposal, Spot, choose};
+use crate::filter::word::{NameList, Walk, Worded as _, words};
 use crate::filter::{FilterError, FilterScene, Name, Tree};
 use crate::{Event, PathHeader, VertexKind, VertexRecord};
 
@@ -171,12 +166,6 @@ impl Described for VertexCheck {
 impl Leaves for VertexCheck {
     fn kinds() -> impl Iterator<Item = (Self, &'static str)> {
         std::iter::once((Self::default(), VertexCondition::EXAMPLE))
-    }
-}
-
-impl Display for VertexCheck {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.write_str(&text_of(self))
     }
 }
 

@@ -11,9 +11,10 @@ mod symbol;
 use std::fmt;
 use std::ops::Range;
 
-use super::complete::Offers;
-use super::parse::Quoted;
-use super::{FilterError, FilterScene, Name, NameList};
+use super::offers::Within;
+use super::quote::Quoted;
+use super::word::NameList;
+use super::{FilterError, FilterScene, Name};
 use symbol::Bases;
 
 pub(super) use automaton::LightPathAutomaton;
@@ -127,10 +128,10 @@ impl LightPathExpression {
     }
 }
 
-/// What may come at the end of an expression that is still being written, and whether it could end
-/// there.
-pub(super) fn offers<'a>(text: &'a str, offers: Offers<'a>) -> (Option<Offers<'a>>, bool) {
-    (parse::offers(text, offers), LightPathExpression::parse(text).is_ok())
+/// What may come at the end of an expression that is still being written.
+pub(super) fn offers(text: &str, scene: &FilterScene) -> Within {
+    let is_whole = LightPathExpression::parse(text).is_ok();
+    Within { found: parse::offers(text, scene), is_whole }
 }
 
 impl fmt::Display for LightPathExpression {

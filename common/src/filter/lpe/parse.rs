@@ -1,13 +1,12 @@
 //! The text of a light path expression.
 
-use super::super::FilterError;
-use super::super::complete::Offers;
-use super::super::form::{NameList, Stop, Word};
-use super::super::print::escaped;
-use super::super::reader::Reader;
 use super::symbol::{Bases, LETTERS, MAX_LABELS};
 use super::{Atom, Node};
-use crate::filter::Name;
+use crate::filter::offers::{Offer, Offers};
+use crate::filter::quote::escaped;
+use crate::filter::reader::Reader;
+use crate::filter::word::{NameList, Stop, Word};
+use crate::filter::{FilterError, FilterScene, Name};
 
 /// An expression is no longer than this, in bytes.
 const MAX_TEXT: usize = 1024;
@@ -43,12 +42,12 @@ pub(super) fn parse(text: &str) -> Result<(Node, Vec<Name>), FilterError> {
 }
 
 /// What may come at the end of `text`.
-pub(super) fn offers<'a>(text: &'a str, offers: Offers<'a>) -> Option<Offers<'a>> {
-    let reader = Reader::of_expression(text, Some(offers));
+pub(super) fn offers(text: &str, scene: &FilterScene) -> Vec<Offer> {
+    let reader = Reader::of_expression(text, Some(Offers::new(scene)));
     let mut parser = Parser { reader, labels: Vec::new() };
     // What is wrong is wrong before the end, where nothing is offered then.
     drop(parser.whole());
-    parser.reader.into_offers()
+    parser.reader.into_offers().map(|offers| offers.found).unwrap_or_default()
 }
 
 struct Parser<'a> {

@@ -4,11 +4,12 @@ use std::mem::discriminant;
 
 use proptest::prelude::*;
 
-use super::super::complete::{Offer, Offers, Rank, offers};
-use super::super::condition::number::Comparison;
+use super::super::complete::offers;
+use super::super::condition::Leaves as _;
+use super::super::condition::attribute::{Attribute, Comparison};
 use super::super::condition::strategy::Among;
 use super::super::condition::vertex::{On, VertexClass};
-use super::super::parse::Leaves as _;
+use super::super::offers::{Offer, Offers, Rank};
 use super::random::filter;
 use super::*;
 

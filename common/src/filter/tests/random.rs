@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 
-use super::super::parse::Leaves;
+use super::super::condition::Leaves;
 use super::*;
 
 /// Names as scenes have them, and as nobody expects them.

@@ -212,6 +212,7 @@ impl Job {
         if let Some(reference) = &self.reference {
             report.relative_mse = Some(relative_mse(image.pixels(), reference.pixels()));
             report.mean_ratio = Some(mean_ratio(image.pixels(), reference.pixels()));
+            report.reference_missing = missing(reference);
         }
         let planes = errors.map(|ledger| auto::planes(&ledger, scene.radiance_scale()));
         self.image.write(&image, &planes.unwrap_or_default(), &metadata(&report))?;
@@ -277,6 +278,11 @@ pub(super) fn check_reference(reference: &Film, scene: &Scene) -> anyhow::Result
         camera.height,
     );
     Ok(())
+}
+
+/// Pixels for which a reference has no value.
+pub(super) fn missing(reference: &Film) -> usize {
+    reference.pixels().iter().filter(|pixel| !pixel.is_finite()).count()
 }
 
 fn show(meter: &Meter, progress: Progress) {

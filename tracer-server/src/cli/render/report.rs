@@ -106,6 +106,10 @@ pub(super) fn print(out: &mut impl Write, report: &Report, file: &Destination) -
              {ratio:.5}",
             error * report.cpu_seconds,
         )?;
+        if report.reference_missing > 0 {
+            let missing = report.reference_missing;
+            writeln!(out, "the reference has no value for {missing} pixels, which are left out")?;
+        }
     }
     writeln!(out, "written to {}", file.path().display())
 }

@@ -184,11 +184,11 @@ mod tests {
     #[test]
     fn what_remains_is_plain() {
         let mut out = MtlText::default();
-        let text = "newmtl a b # c\n\tKd 0.5\nKa 1 1 1\nd -halo 0.5\nmap_bump x.png\n";
+        let text = "newmtl a b #1\n\tKd 0.5\nKa 1 1 1\nd -halo 0.5\nmap_bump x.png\n";
         scan(text, Path::new("x.mtl"), &mut out).expect("valid");
-        assert_eq!(out.text, "newmtl a b\nKd 0.5 0.5 0.5\nd 0.5\n");
+        assert_eq!(out.text, "newmtl a b #1\nKd 0.5 0.5 0.5\nd 0.5\n");
         assert_eq!(out.warnings.len(), 1, "the bump map: {:?}", out.warnings);
-        assert!(out.places.contains_key("a b"), "names may hold spaces");
+        assert!(out.places.contains_key("a b #1"), "names may hold spaces and numbers");
     }
 
     #[test]

@@ -15,7 +15,7 @@ use crate::bsdf::LambertDescription;
 use crate::scene::description::{Coding, Material, Mesh, Texture};
 use crate::scene::reading::diagnostic::{LoadError, Place, Warning};
 use crate::scene::reading::image::read_texture;
-use crate::scene::reading::text::read_lossy;
+use crate::scene::reading::text::{read_lossy, without_comment};
 use library::{MtlText, texture_file};
 use material::{Mapped, MtlEntry, UNKNOWN_GREY, phong_roughness};
 use text::ObjText;
@@ -48,6 +48,7 @@ pub(crate) fn read(path: &Path) -> Result<ObjScene, LoadError> {
     let mut warnings = std::mem::take(&mut obj.warnings);
     let mut mtl = read_libraries(path, &obj.libraries, &mut warnings)?;
     warnings.append(&mut mtl.warnings);
+    find_bare_names(&mut obj, &mtl);
     tell_unknown_materials(path, &obj, &mtl, &mut warnings);
 
     let library =
@@ -112,11 +113,12 @@ fn read_libraries(
     let mut out = MtlText::default();
     for (names, line) in libraries {
         // The rest of the line may be one name with spaces, or several names.
-        let whole = folder.join(names.replace('\\', "/"));
-        let files = if whole.is_file() {
-            vec![whole]
-        } else {
-            names.split_whitespace().map(|name| folder.join(name.replace('\\', "/"))).collect()
+        let place = |name: &str| folder.join(name.replace('\\', "/"));
+        let bare = without_comment(names).trim_end();
+        let whole = [names, bare].map(place).into_iter().find(|file| file.is_file());
+        let files = match whole {
+            Some(whole) => vec![whole],
+            None => bare.split_whitespace().map(place).collect(),
         };
         for file in files {
             match read_lossy(&file, MAX_MTL_BYTES) {
@@ -133,6 +135,23 @@ fn read_libraries(
         }
     }
     Ok(out)
+}
+
+/// A material that is used by a name that no library has is one whose name differs only by a comment
+/// behind it, if there is such a one.
+fn find_bare_names(obj: &mut ObjText, mtl: &MtlText) {
+    let bare = |name: &str| without_comment(name).trim_end().to_owned();
+    let unknown: Vec<String> =
+        obj.used.keys().filter(|name| !mtl.places.contains_key(*name)).cloned().collect();
+    for name in unknown {
+        let wanted = bare(&name);
+        let Some(known) = mtl.places.keys().find(|known| bare(known) == wanted) else { continue };
+        let uses = |name: &str| format!("usemtl {name}\n");
+        obj.text = obj.text.replace(&uses(&name), &uses(known));
+        if let Some(line) = obj.used.remove(&name) {
+            obj.used.entry(known.clone()).or_insert(line);
+        }
+    }
 }
 
 fn tell_unknown_materials(path: &Path, obj: &ObjText, mtl: &MtlText, warnings: &mut Vec<Warning>) {
@@ -153,9 +172,16 @@ struct Images {
 }
 
 impl Images {
+    /// The file that a statement names, with or without what looks like a comment.
+    fn file(&self, value: &str) -> PathBuf {
+        let whole = self.folder.join(texture_file(value));
+        let bare = || self.folder.join(texture_file(without_comment(value).trim_end()));
+        if whole.is_file() { whole } else { bare() }
+    }
+
     /// Reads a texture unless it is known, and tells its mean.
     fn map(&mut self, value: &str, coding: Coding) -> Result<Mapped, String> {
-        let file = self.folder.join(texture_file(value));
+        let file = self.file(value);
         let Self { textures, known, .. } = self;
         let read = |(file, coding): &(PathBuf, Coding)| {
             let texture = read_texture(file, *coding)?;
@@ -170,7 +196,7 @@ impl Images {
 
     /// A texture of Phong exponents as one of roughness.
     fn exponents(&mut self, value: &str, full: f64) -> Result<Mapped, String> {
-        let file = self.folder.join(texture_file(value));
+        let file = self.file(value);
         let mut texture = read_texture(&file, Coding::Linear)?;
         let rough =
             |code: u8| (255.0 * phong_roughness(full * f64::from(code) / 255.0)).round() as u8;
@@ -184,7 +210,7 @@ impl Images {
 
     /// The mean of an emission texture, which is not kept.
     fn mean(&self, value: &str) -> Result<Rgb, String> {
-        Ok(read_texture(&self.folder.join(texture_file(value)), Coding::Srgb)?.mean())
+        Ok(read_texture(&self.file(value), Coding::Srgb)?.mean())
     }
 
     fn entry(&mut self, source: &tobj::Material) -> MtlEntry {

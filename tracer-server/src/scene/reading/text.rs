@@ -66,6 +66,12 @@ pub(crate) fn statements(text: &str) -> impl Iterator<Item = Statement<'_>> {
     std::iter::from_fn(move || {
         loop {
             let (index, raw) = lines.next()?;
+            if names_something(raw) {
+                if let Some(statement) = split(Cow::Borrowed(raw), index + 1) {
+                    return Some(statement);
+                }
+                continue;
+            }
             let mut line = Cow::Borrowed(without_comment(raw));
             while let Some(head) = line.trim_end().strip_suffix('\\') {
                 let mut joined = head.to_owned();
@@ -84,9 +90,16 @@ pub(crate) fn statements(text: &str) -> impl Iterator<Item = Statement<'_>> {
     })
 }
 
+/// True for statements whose rest is a name, which may hold anything: programs number materials with
+/// `#`.
+fn names_something(line: &str) -> bool {
+    let keyword = cut(line).0;
+    keyword.starts_with("map_") || matches!(keyword, "newmtl" | "usemtl" | "mtllib" | "o" | "g")
+}
+
 /// A `#` begins a comment at the start of a line or after white space; elsewhere it is part of a
 /// name.
-fn without_comment(line: &str) -> &str {
+pub(crate) fn without_comment(line: &str) -> &str {
     let starts = |at: usize| {
         line.get(..at).is_none_or(|head| head.chars().next_back().is_none_or(char::is_whitespace))
     };
@@ -134,9 +147,9 @@ mod tests {
 
     #[test]
     fn comments_joins_and_blank_lines() {
-        let text = "# head\n\n#comment\n  v 1 2 3 # tail\nf 1 2 \\\n 3\nusemtl a#b\nend \\";
+        let text = "# head\n\n#comment\n  v 1 2 3 # tail\nf 1 2 \\\n 3\nusemtl Grey #1\nend \\";
         let expected =
-            [(4, "v", "1 2 3"), (5, "f", "1 2   3"), (7, "usemtl", "a#b"), (8, "end", "")];
+            [(4, "v", "1 2 3"), (5, "f", "1 2   3"), (7, "usemtl", "Grey #1"), (8, "end", "")];
         let expected: Vec<_> =
             expected.iter().map(|&(l, k, r)| (l, k.to_owned(), r.to_owned())).collect();
         assert_eq!(all(text), expected);

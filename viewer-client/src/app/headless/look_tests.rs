@@ -1,7 +1,5 @@
 //! What colours, blending, textures and the light do to the picture.
 
-use std::collections::VecDeque;
-
 use common::{
     BatchBuilder, BatchLimits, Event, PathBatch, PathHeader, StrategyId, TexturePreview,
     VertexKind, VertexRecord, encode_throughput,
@@ -9,9 +7,9 @@ use common::{
 use image::RgbaImage;
 
 use super::tests::{COLUMN, SIZE, picture_of, rows_that_differ, stage};
-use crate::command::{Blend, ColorMode};
-use crate::source::connection::Delivery;
+use crate::synthetic::Delivery;
 use crate::synthetic::{camera, delivery};
+use crate::value::{Blend, ColorMode};
 
 /// A level path before the wall, at this height, with its throughput on the light.
 fn batch(paths: &[(PathHeader, f32, f32)]) -> PathBatch {
@@ -35,7 +33,7 @@ fn batch(paths: &[(PathHeader, f32, f32)]) -> PathBatch {
 }
 
 fn of(batch: PathBatch) -> Delivery {
-    Delivery { batches: [batch].into(), ..delivery(&[&[[0.0; 3]]]) }
+    Delivery { batches: vec![batch], ..delivery(&[&[[0.0; 3]]]) }
 }
 
 const LOOK: [&str; 4] =
@@ -133,14 +131,12 @@ fn distance_filter_and_marks_thin_paths_out() {
 
 /// The wall with a texture: red to the left, green to the right.
 fn painted() -> Delivery {
-    let mut delivery = Delivery { batches: VecDeque::new(), ..delivery(&[&[[0.0; 3]]]) };
-    if let Some(scene) = &mut delivery.scene {
-        let mesh = &mut scene.mesh;
-        mesh.texcoords = mesh.positions.iter().map(|p| [p[0] / 1024.0 + 0.5, 0.5]).collect();
-        let texels = vec![[160, 0, 0], [160, 0, 0], [0, 160, 0], [0, 160, 0]];
-        mesh.textures = vec![TexturePreview { width: 4, height: 1, texels }];
-        mesh.materials[0].texture = Some(0);
-    }
+    let mut delivery = Delivery { batches: Vec::new(), ..delivery(&[&[[0.0; 3]]]) };
+    let mesh = &mut delivery.scene.mesh;
+    mesh.texcoords = mesh.positions.iter().map(|p| [p[0] / 1024.0 + 0.5, 0.5]).collect();
+    let texels = vec![[160, 0, 0], [160, 0, 0], [0, 160, 0], [0, 160, 0]];
+    mesh.textures = vec![TexturePreview { width: 4, height: 1, texels }];
+    mesh.materials[0].texture = Some(0);
     delivery
 }
 

@@ -1,76 +1,24 @@
 //! The viewer without a window: the same interface, drawn into a texture and written to a file.
 
-use std::path::Path;
+mod job;
+
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context as _, bail};
+use anyhow::Context as _;
 use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration, WgpuSetup};
+use host::Quiet;
 
 use crate::app::Viewer;
 use crate::app::window;
 use crate::draw::gpu::{Quality, Renderer, read_back};
-use crate::source::connection::{Link, Peer, Waker};
 
-/// A daemon that has sent nothing for this long will not.
-const PATIENCE: Duration = Duration::from_mins(1);
+pub use job::{Job, Wait, run};
+
 /// How long to wait between looks into the inbox.
 const LOOK: Duration = Duration::from_millis(20);
 /// Frames that egui may need until nothing moves any more.
 const SETTLING_FRAMES: usize = 6;
-
-/// When to take the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wait {
-    /// When this many paths have come.
-    Paths(u64),
-    /// After this long.
-    Time(Duration),
-}
-
-/// Connects, waits, and writes the picture. Without a daemon, everything is there already.
-pub fn run(
-    mut viewer: Viewer,
-    peer: Option<Peer>,
-    size: [u32; 2],
-    wait: Wait,
-    file: &Path,
-) -> anyhow::Result<()> {
-    let mut stage = Stage::new(size)?;
-    if let Some(peer) = peer {
-        let waker: Waker = Box::new(|_| {});
-        viewer.set_link(Link::start(peer, waker)?);
-        wait_for(&mut viewer, wait)?;
-    }
-    let image = stage.settled(&mut viewer)?;
-    image.save(file).with_context(|| format!("cannot write {}", file.display()))
-}
-
-fn wait_for(viewer: &mut Viewer, wait: Wait) -> anyhow::Result<()> {
-    let started = Instant::now();
-    let mut heard = (started, 0);
-    loop {
-        viewer.receive();
-        let done = match wait {
-            Wait::Time(duration) => started.elapsed() >= duration,
-            Wait::Paths(paths) => viewer.paths_received() >= paths && viewer.is_settled(),
-        };
-        if done {
-            return Ok(());
-        }
-        if viewer.paths_received() != heard.1 {
-            heard = (Instant::now(), viewer.paths_received());
-        }
-        if matches!(wait, Wait::Paths(_)) && heard.0.elapsed() > PATIENCE {
-            bail!(
-                "no path came for {} s after {} paths; is a daemon running at {}?",
-                PATIENCE.as_secs(),
-                heard.1,
-                viewer.status().address
-            );
-        }
-        std::thread::sleep(LOOK);
-    }
-}
 
 async fn graphics(backends: wgpu::Backends) -> Result<RenderState, egui_wgpu::WgpuError> {
     let mut setup = window::graphics_setup();
@@ -101,6 +49,10 @@ pub struct Stage {
     time: f64,
     /// When the interface wants another frame by itself.
     due: Option<Instant>,
+    /// Texts for the clipboard that there is not.
+    copied: Vec<String>,
+    /// Who waits for a picture of the window.
+    waiting: Vec<egui::ScreenshotCallback>,
 }
 
 impl std::fmt::Debug for Stage {
@@ -122,11 +74,14 @@ impl Stage {
 
     fn with(size: [u32; 2], quality: fn(&RenderState) -> Quality) -> anyhow::Result<Self> {
         let runtime = tokio::runtime::Builder::new_current_thread().build()?;
+        let quiet = Quiet::begin();
         // Looking for OpenGL without a display makes drivers complain, so it comes last.
         let gpu = runtime
             .block_on(graphics(wgpu::Backends::PRIMARY))
-            .or_else(|_| runtime.block_on(graphics(wgpu::Backends::GL)))
-            .context("no graphics driver; on Debian, install mesa-vulkan-drivers")?;
+            .or_else(|_| runtime.block_on(graphics(wgpu::Backends::GL)));
+        window::told_by_drivers(&quiet.end());
+        let gpu = gpu.context("no graphics driver; on Debian, install mesa-vulkan-drivers")?;
+        let size = within(size, &gpu);
         let ctx = egui::Context::default();
         Viewer::install(&ctx, &gpu, quality(&gpu));
         let target = gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -139,7 +94,16 @@ impl Stage {
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
-        Ok(Self { ctx, gpu, size, target, time: 0.0, due: None })
+        Ok(Self {
+            ctx,
+            gpu,
+            size,
+            target,
+            time: 0.0,
+            due: None,
+            copied: Vec::new(),
+            waiting: Vec::new(),
+        })
     }
 
     /// Draws until nothing is left to upload and nothing moves, and reads the picture back.
@@ -184,8 +148,7 @@ impl Stage {
         // Half a second a frame: animations are over after a few frames.
         self.time += 0.5;
         let mut output = self.ctx.run_ui(input, |ui| viewer.ui(ui));
-        let root = output.viewport_output.get(&egui::ViewportId::ROOT);
-        self.due = root.and_then(|root| started.checked_add(root.repaint_delay));
+        self.heed(&mut output, started);
         let primitives = self.ctx.tessellate(output.shapes, output.pixels_per_point);
         let commands =
             self.encode(&primitives, &mut output.textures_delta, output.pixels_per_point);
@@ -196,6 +159,42 @@ impl Stage {
         let cost = FrameCost { cpu, wall: started.elapsed() };
         tracing::debug!("a frame took {:.0} ms", 1e3 * cost.wall.as_secs_f64());
         Ok(cost)
+    }
+
+    /// Does what a desktop does for a program.
+    fn heed(&mut self, output: &mut egui::FullOutput, now: Instant) {
+        for command in output.platform_output.commands.drain(..) {
+            if let egui::OutputCommand::CopyText(text) = command {
+                self.copied.push(text);
+            }
+        }
+        let Some(root) = output.viewport_output.get_mut(&egui::ViewportId::ROOT) else { return };
+        self.due = now.checked_add(root.repaint_delay);
+        for command in root.commands.drain(..) {
+            if let egui::ViewportCommand::Screenshot(callback) = command {
+                self.waiting.push(callback);
+            }
+        }
+    }
+
+    /// What was copied since this was asked last.
+    fn take_copied(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.copied)
+    }
+
+    /// Gives pictures of the window to those who wait for one, when nothing moves any more.
+    fn give_pictures(&mut self, viewer: &mut Viewer) -> anyhow::Result<()> {
+        let waiting = std::mem::take(&mut self.waiting);
+        if waiting.is_empty() {
+            return Ok(());
+        }
+        let picture = self.settled(viewer)?;
+        let size = self.size.map(|side| side as usize);
+        let picture = Arc::new(egui::ColorImage::from_rgba_unmultiplied(size, picture.as_raw()));
+        for callback in waiting {
+            callback.complete(Arc::clone(&picture));
+        }
+        Ok(())
     }
 
     /// Lets `time` go by as a window does where nobody touches it: frames are drawn only when
@@ -261,9 +260,19 @@ impl Stage {
         let [width, height] = self.size;
         let encoder = device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
-        let bytes = read_back((device, queue), encoder, self.target.as_image_copy(), 4)?;
+        let bytes = read_back(device, queue, encoder, self.target.as_image_copy(), 4)?;
         image::RgbaImage::from_raw(width, height, bytes).context("the picture has a wrong size")
     }
+}
+
+/// The size of a picture, or as much of it as the graphics card can draw.
+fn within(size: [u32; 2], gpu: &RenderState) -> [u32; 2] {
+    let most = gpu.device.limits().max_texture_dimension_2d;
+    let [width, height] = size.map(|side| side.min(most));
+    if [width, height] != size {
+        tracing::warn!("the graphics card draws no more than {width} x {height} pixels of these");
+    }
+    [width, height]
 }
 
 #[cfg(test)]

@@ -3,9 +3,8 @@
 use image::{Rgba, RgbaImage};
 
 use super::*;
-use crate::source::connection::Delivery;
-use crate::source::status::Status;
-use crate::synthetic::delivery;
+use crate::source::Source;
+use crate::synthetic::{Delivery, delivery};
 
 pub(super) const SIZE: [u32; 2] = [1280, 720];
 
@@ -27,14 +26,14 @@ fn picture(stage: &mut Stage, paths: &[&[[f32; 3]]], commands: &[&str]) -> RgbaI
 
 /// The window after these commands, when this has come.
 pub(super) fn picture_of(stage: &mut Stage, delivery: Delivery, commands: &[&str]) -> RgbaImage {
-    let mut viewer = Viewer::new(Status::new("127.0.0.1:50061".to_owned(), false));
+    let mut viewer = Viewer::new(Source::daemon("127.0.0.1:50061".to_owned(), false));
     // A filter that stands when the paths come does not wait for the user's hand to rest.
     let (filter, commands): (Vec<&str>, Vec<&str>) =
         commands.iter().partition(|command| command.starts_with("filter"));
     for command in filter {
         viewer.apply(command.parse().expect(command));
     }
-    viewer.take(delivery);
+    delivery.put(viewer.inbox().expect("a daemon"));
     viewer.receive();
     let fixed = ["camera view front", "scene grid off", "scene camera off", "cloud ends off"];
     for command in fixed.into_iter().chain(commands) {

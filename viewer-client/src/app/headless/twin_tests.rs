@@ -10,9 +10,9 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::tests::{SIZE, picture_of, stage};
 use super::*;
-use crate::command::ColorMode;
-use crate::source::connection::Delivery;
+use crate::synthetic::Delivery;
 use crate::synthetic::{camera, delivery};
+use crate::value::ColorMode;
 
 /// Paths of all kinds, some of which go behind the wall or past the eye.
 fn batch() -> PathBatch {
@@ -51,7 +51,7 @@ fn batch() -> PathBatch {
 }
 
 fn of(batch: PathBatch) -> Delivery {
-    Delivery { batches: [batch].into(), ..delivery(&[&[[0.0; 3]]]) }
+    Delivery { batches: vec![batch], ..delivery(&[&[[0.0; 3]]]) }
 }
 
 /// How much brighter one picture is than another.

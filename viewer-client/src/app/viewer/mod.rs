@@ -1,132 +1,78 @@
-//! The viewer itself: owns what came, what the user chose, and what is on the graphics card.
+//! The viewer itself: what is looked at, what the user chose, and what is on the graphics card.
 
-mod arrival;
 mod elsewhere;
-mod filtering;
-mod playing;
+#[cfg(test)]
+mod elsewhere_tests;
+mod on_card;
+mod scripted;
 mod selecting;
+#[cfg(test)]
+mod tests;
 
 use std::time::{Duration, Instant};
 
-use common::{Appearance, FilterText, Gaze};
+use common::{Appearance, Gaze, Order};
 use egui_wgpu::RenderState;
 
-use crate::app::desktop::{Connect, Desk};
-use crate::camera::ViewCamera;
+use super::background::{BackgroundTasks, Outcome, TaskResult};
+use super::desktop::{Connect, Desktop};
+use super::preferences::Preferences;
 use crate::command::{
-    CameraCommand, CloudCommand, Command, ImageCommand, LayoutCommand, PathCommand,
+    CloudCommand, Command, FilterCommand, ImageCommand, PlayCommand, SessionCommand, Trait,
 };
-use crate::draw::gpu::{Quality, Renderer, Uploaded};
-use crate::draw::pick::Aim;
-use crate::habits::Habits;
-use crate::imaging::view::Darkroom;
+use crate::draw::gpu::{Quality, Renderer};
+use crate::imaging::{Finding, Job};
 use crate::keys;
 use crate::panel::{self, NOTICE_TIME, Panel, Slot};
 use crate::settings::Settings;
-use crate::source::Backlog;
-use crate::source::connection::Link;
-use crate::source::model::{Model, corners, drawing_aids};
-use crate::source::playback::Playback;
-use crate::source::selection::Selection;
+use crate::source::connection::{Inbox, Link};
+use crate::source::model::Model;
 use crate::source::status::{LinkState, Status};
-use crate::source::store::{Drawn, PAGE_POINTS, Store};
-use crate::value::Bounds;
+use crate::source::store::PAGE_POINTS;
+use crate::source::{Daemon, HAND, Origin, Source};
 use crate::value::history::History;
-use crate::value::theme;
+use crate::value::{Bounds, Theme, theme};
 use crate::world::World;
 
-/// Points of paths that go to the graphics card in one frame at most: 6 MiB.
-const UPLOAD_POINTS: usize = 16 * PAGE_POINTS;
-/// The others are told of a new point of view this often at most.
-const APPEARANCE: Duration = Duration::from_millis(500);
+use on_card::OnCard;
+
+/// The longest pause between two frames that a file of paths plays on by, in seconds.
+const LONGEST_FRAME: f32 = 0.1;
 
 /// Everything behind the window.
 #[derive(Debug)]
 pub struct Viewer {
     settings: Settings,
-    camera: ViewCamera,
-    status: Status,
-    store: Store,
-    darkroom: Darkroom,
-    desk: Desk,
-    model: Option<Model>,
-    /// Hash of the scene that is shown.
-    scene_hash: String,
-    link: Option<Link>,
-    waiting: Backlog,
+    history: History<Settings>,
+    source: Source,
     panels: Vec<(Slot, Box<dyn Panel>)>,
-    stale: Stale,
-    /// The graphics card holds paths of this viewer, not of one before it.
-    uploaded_any: bool,
+    desktop: Desktop,
+    tasks: BackgroundTasks,
+    on_card: OnCard,
     started: Instant,
     closing: bool,
-    /// Commands that wait for the scene, the image or the first paths.
-    script: Vec<Command>,
-    /// Orders given so far: the number of the last one.
-    orders: u32,
-    /// What the others were shown of this viewer last, and when.
-    appearance: (Appearance, Instant),
-    /// Filters set so far: the number of the last one.
-    filters: u32,
-    /// The filter that was asked for last, and when the user changed it since.
-    asked_for: FilterText,
-    filter_changed: Option<Instant>,
-    /// The filter that the daemon last said it follows.
-    filter_in_force: u32,
-    /// The path that is looked at, and where the user pointed to select it.
-    selection: Option<Selection>,
-    pointed: Option<Aim>,
-    history: History<Settings>,
-    /// What the filter wants of a file of paths.
-    counted: Option<common::FilterCounts>,
-    /// A file of paths in the place of a daemon.
-    playback: Option<Playback>,
-    /// Number of the explorer's step that is shown; the newest without.
-    scrub: Option<u64>,
-}
-
-/// What on the graphics card no longer fits what the viewer holds.
-#[derive(Clone, Copy, Debug)]
-struct Stale {
-    surfaces: bool,
-    aids: bool,
+    /// Commands that give something away wait.
+    holds_back: bool,
 }
 
 impl Viewer {
-    /// A viewer that has not connected yet.
-    pub fn new(status: Status) -> Self {
-        let settings = Settings::default();
-        let home = status.embedded.then(|| status.address.clone());
-        Self {
-            store: Store::new(budget_bytes(settings.cloud.budget_mib)),
-            settings,
-            camera: ViewCamera::default(),
-            status,
-            darkroom: Darkroom::default(),
-            desk: Desk::new(home),
-            model: None,
-            scene_hash: String::new(),
-            link: None,
-            waiting: Backlog::default(),
+    /// A viewer that looks at `source`.
+    pub fn new(source: Source) -> Self {
+        let home = source.status.embedded.then(|| source.status.address.clone());
+        let mut viewer = Self {
+            settings: Settings::default(),
+            history: History::default(),
+            source: Source::nothing(),
             panels: panel::all(),
-            stale: Stale { surfaces: true, aids: true },
-            uploaded_any: false,
+            desktop: Desktop::new(home),
+            tasks: BackgroundTasks::default(),
+            on_card: OnCard::default(),
             started: Instant::now(),
             closing: false,
-            script: Vec::new(),
-            orders: 0,
-            appearance: (Appearance::default(), Instant::now()),
-            filters: 0,
-            asked_for: FilterText::default(),
-            filter_changed: None,
-            filter_in_force: 0,
-            selection: None,
-            pointed: None,
-            history: History::default(),
-            counted: None,
-            playback: None,
-            scrub: None,
-        }
+            holds_back: false,
+        };
+        viewer.look_at(source);
+        viewer
     }
 
     /// Sets up what egui and the graphics card need, once.
@@ -142,57 +88,32 @@ impl Viewer {
         gpu.renderer.write().callback_resources.insert(renderer);
     }
 
-    /// Takes over a connection.
+    /// Leaves what was looked at, with everything that came of it, for something else.
+    pub fn look_at(&mut self, source: Source) {
+        self.source = source;
+        self.source.adopt(&mut self.settings);
+    }
+
+    /// Takes over a connection to the daemon that is looked at.
     pub fn set_link(&mut self, link: Link) {
-        self.link = Some(link);
-        if !self.settings.filter.whole().wants_all() {
-            self.ask_for_paths();
-        }
+        self.source.attach(link);
     }
 
-    /// Takes over what the user is used to, and how to connect elsewhere. Who comes for the first time
-    /// sees the first steps.
-    pub fn adopt(&mut self, habits: Habits, connect: Connect) {
-        match &habits.layout {
-            Some(layout) => self.settings.layout.clone_from(layout),
-            None => self.settings.layout.hint = true,
-        }
-        self.settings.filter.keep_all(&habits.filters);
-        self.desk.habits = habits;
-        self.desk.connect = Some(connect);
+    /// Takes over what was remembered, and how to connect elsewhere.
+    pub fn adopt(&mut self, preferences: Preferences, connect: Connect) {
+        preferences.restore(&mut self.settings);
+        self.desktop.preferences = preferences;
+        self.desktop.connect = Some(connect);
     }
 
-    /// What the user is used to by now.
-    pub fn habits(&self) -> Habits {
-        let mut filters = self.settings.filter.kept().to_vec();
-        for kept in &mut filters {
-            kept.on = false;
-        }
-        let layout = Some(self.settings.layout.clone());
-        Habits { filters, layout, ..self.desk.habits.clone() }
+    /// Tells the user of something that went wrong.
+    pub fn complain(&mut self, problem: String) {
+        self.say(Err(problem));
     }
 
-    /// Follows the commands of a script. Those for the camera wait for the scene, which would
-    /// otherwise undo them; those that give the image away wait for the image; and those that need a
-    /// daemon that listens, or a path to pick, wait for the first paths.
-    pub fn run_script(&mut self, commands: Vec<Command>) {
-        for command in commands {
-            let must_wait = match command {
-                Command::Camera(_) | Command::Path(PathCommand::Show(..)) => self.model.is_none(),
-                Command::Path(PathCommand::Vertex(_)) => self.selection.is_none(),
-                Command::Path(PathCommand::Stay(_)) => self.longest_stays().is_none(),
-                Command::Order(_) | Command::Path(_) => self.store.is_empty(),
-                Command::Image(ImageCommand::Save(_) | ImageCommand::Tev(_)) => {
-                    self.darkroom.film.size() == [0, 0]
-                }
-                _ => false,
-            };
-            if must_wait {
-                self.script.push(command);
-            } else {
-                self.apply(command);
-            }
-        }
+    /// What is worth remembering by now.
+    pub fn preferences(&self) -> Preferences {
+        Preferences::of(&self.settings, &self.desktop.preferences)
     }
 
     /// True once the user wants to leave.
@@ -202,26 +123,52 @@ impl Viewer {
 
     /// Paths that have come so far.
     pub fn paths_received(&self) -> u64 {
-        self.store.counts().paths
+        self.source.shown.store.counts().paths
+    }
+
+    /// True when scene, image, statistics and all paths that have come are taken in, and nothing is left to
+    /// do.
+    pub fn is_settled(&self) -> bool {
+        self.has_everything() && self.is_idle()
     }
 
     /// True when scene, image, statistics and all paths that have come are taken in.
-    pub fn is_settled(&self) -> bool {
-        let enough = self.waiting.paths() <= self.settings.cloud.threshold as usize;
-        let whole = self.model.is_some() && self.darkroom.film.size() != [0, 0];
-        let idle =
-            self.script.is_empty() && self.filter_changed.is_none() && !self.darkroom.is_busy();
-        whole && idle && enough && self.status.statistics.is_some()
+    pub fn has_everything(&self) -> bool {
+        let Source { origin, shown, status, .. } = &self.source;
+        let threshold = self.settings.cloud.threshold as usize;
+        let agrees = match origin {
+            Origin::Daemon(daemon) => {
+                daemon.inbox().paths() <= threshold && daemon.agrees_on_paths()
+            }
+            Origin::Nothing | Origin::File(_) => true,
+        };
+        let whole = shown.model.is_some() && shown.image.film.size() != [0, 0];
+        whole && agrees && status.statistics.is_some()
+    }
+
+    /// What the user has chosen.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
     }
 
     /// What is known of the daemon.
     pub fn status(&self) -> &Status {
-        &self.status
+        &self.source.status
+    }
+
+    /// What went wrong since this was asked last: for whoever has no window to read it in.
+    pub fn take_failures(&mut self) -> Vec<String> {
+        self.source.status.take_failures()
+    }
+
+    /// Where what comes from the daemon waits: for harnesses without a network.
+    pub fn inbox(&self) -> Option<&Inbox> {
+        self.source.as_daemon().map(Daemon::inbox)
     }
 
     /// True when something has come that is not taken in.
     pub fn has_news(&self) -> bool {
-        self.link.as_ref().is_some_and(Link::has_news)
+        self.inbox().is_some_and(Inbox::has_news)
     }
 
     /// True while the user wants the paths to stand still.
@@ -229,141 +176,215 @@ impl Viewer {
         self.settings.cloud.frozen
     }
 
-    /// Goes on with the script as far as what has come allows.
-    fn go_on(&mut self) {
-        let commands = std::mem::take(&mut self.script);
-        self.run_script(commands);
+    /// Takes in what has come. True when there was anything.
+    pub fn receive(&mut self) -> bool {
+        let arrived = self.source.receive(&mut self.settings);
+        if arrived.session && !self.source.status.embedded {
+            self.desktop.preferences.add_recent(&self.source.status.address);
+        }
+        let finished = self.work_on();
+        self.appear();
+        arrived.news || finished
     }
 
     /// Does what was asked for, so that it can be undone where it changed a setting.
     pub fn apply(&mut self, command: Command) {
         tracing::trace!("{command}");
         let restored = match command {
-            Command::Undo => self.history.undo(self.settings.clone()),
-            Command::Redo => self.history.redo(self.settings.clone()),
+            Command::Session(SessionCommand::Undo) => self.history.undo(self.settings.clone()),
+            Command::Session(SessionCommand::Redo) => self.history.redo(self.settings.clone()),
             _ => {
                 let before = self.settings.clone();
-                let text = command.to_string();
-                let is_sheet = matches!(
-                    command,
-                    Command::Layout(
-                        LayoutCommand::Help(_) | LayoutCommand::Hint(_) | LayoutCommand::Palette(_)
-                    )
-                );
+                let form = command.form();
                 self.carry_out(command);
-                if self.settings != before && !is_sheet {
+                if self.settings != before && !form.is(Trait::Passing) {
                     let time = self.started.elapsed().as_secs_f64();
-                    self.history.note(before, kind(&text), time);
+                    self.history.record(before, form.words, time);
                 }
                 return;
             }
         };
         if let Some(settings) = restored {
-            self.restore(settings);
+            self.settings = settings;
+            self.source.shown.configure(&self.settings.cloud);
+            self.source.fit(&mut self.settings);
+            self.source.filter_changed(&self.settings);
         }
-    }
-
-    /// Goes back, or forth, to other settings.
-    fn restore(&mut self, settings: Settings) {
-        self.settings = settings;
-        self.stale.aids = true;
-        self.store.set_budget(budget_bytes(self.settings.cloud.budget_mib));
-        self.store.set_drawn(drawn(self.settings.cloud.dim));
-        self.filter_changed = Some(Instant::now());
     }
 
     fn carry_out(&mut self, command: Command) {
-        // The model of the camera would stand before the user's eyes.
-        self.stale.aids |= matches!(command, Command::Camera(CameraCommand::Through(_)));
         match command {
-            Command::Camera(command) => self.camera.apply(command),
+            Command::Camera(command) => self.source.shown.camera.apply(command),
             Command::Cloud(command) => {
-                self.settings.cloud.apply(command);
-                match command {
-                    CloudCommand::Clear => self.store.clear(),
-                    CloudCommand::Budget(mib) => self.store.set_budget(budget_bytes(mib)),
-                    CloudCommand::Dim(x) => self.store.set_drawn(drawn(x)),
-                    _ => {}
+                self.settings.cloud.set(&command);
+                self.source.shown.configure(&self.settings.cloud);
+                if command == CloudCommand::Clear {
+                    self.source.shown.store.clear();
                 }
             }
-            Command::Scene(command) => {
-                self.settings.scene.apply(command);
-                self.stale.aids = true;
-            }
+            Command::Scene(command) => self.settings.scene.set(&command),
             Command::Filter(command) => {
                 self.settings.filter.apply(&command);
-                self.filter_changed = Some(Instant::now());
-                // Files are small, and nobody else has to be asked.
-                if self.playback.is_some() {
-                    self.judge();
-                }
+                self.tell_misfit(&command);
+                self.source.filter_changed(&self.settings);
             }
             Command::Image(command) => {
                 self.settings.image.apply(&command);
-                self.darkroom.apply(&command, &self.settings.image, &mut self.status);
+                self.change_image(&command);
             }
+            Command::Window(command) => self.settings.window.set(&command),
             Command::Layout(command) => self.settings.layout.apply(command),
-            Command::Desk(command) => self.go_beyond(command),
+            Command::Desktop(command) => self.use_desktop(command),
             Command::Order(order) => self.send(order),
             Command::Path(command) => self.select(command),
             Command::Play(command) => self.play(command),
-            Command::Scrub(number) => self.scrub = number,
+            Command::Scrub(number) => self.source.status.steering.focus.scrub = number,
             // What these change is not what they can undo.
-            Command::Undo | Command::Redo => {}
-            Command::Reconnect => {
-                if let Some(link) = &self.link {
-                    link.retry_now();
-                }
+            Command::Session(SessionCommand::Undo | SessionCommand::Redo) => {}
+            Command::Session(SessionCommand::Reconnect) => {
+                self.source.as_daemon().into_iter().for_each(Daemon::retry_now);
             }
-            Command::Quit => self.closing = true,
+            Command::Session(SessionCommand::Quit) => self.closing = true,
         }
     }
 
-    /// Shows the others where this viewer looks, if the user wishes, when that has changed.
-    fn appear(&mut self) {
-        let (shown, at) = &self.appearance;
-        if at.elapsed() < APPEARANCE || !self.status.is_connected() {
-            return;
+    /// Tells why a filter that was just set is left out.
+    fn tell_misfit(&mut self, command: &FilterCommand) {
+        if matches!(command, FilterCommand::Set(_))
+            && let Some(error) = self.settings.filter.complaint()
+        {
+            self.say(Err(format!("The filter is left out: {}.", error.message)));
         }
-        let appearance = if self.settings.layout.seen {
-            let lens = self.camera.lens(1.0);
-            let far = lens.eye + 0.5 * self.camera.bounds().radius() * lens.forward;
-            let gaze = Gaze { eye: lens.eye.into(), target: far.into() };
-            Appearance { gaze: Some(gaze), filter: self.settings.filter.whole().to_string() }
-        } else {
-            Appearance::default()
+    }
+
+    fn say(&mut self, said: Result<String, String>) {
+        self.source.status.say(said);
+    }
+
+    /// Does what an image command asks for beyond the settings.
+    fn change_image(&mut self, command: &ImageCommand) {
+        let look = self.source.suited(&self.settings).image;
+        let Source { shown, status, .. } = &mut self.source;
+        let started = match shown.image.job(command, &look, status.provenance()) {
+            Ok(Some(job)) => self.start(job),
+            Ok(None) => Ok(()),
+            Err(problem) => Err(problem),
         };
-        if appearance != *shown && self.link.as_ref().is_some_and(|l| l.show(appearance.clone())) {
-            self.appearance = (appearance, Instant::now());
+        if let Err(problem) = started {
+            self.say(Err(problem));
         }
     }
 
-    fn send(&mut self, order: common::Order) {
-        if self.refuse_to_steer() {
+    fn start(&mut self, job: Job) -> Result<(), String> {
+        let of = self.source.shown.serial();
+        self.tasks.start(move || job().map(|finding| TaskResult::Image { of, finding }))
+    }
+
+    /// Takes in what background tasks have brought back. True when there was anything.
+    fn finish_tasks(&mut self) -> bool {
+        let outcomes = self.tasks.finished();
+        let any = !outcomes.is_empty();
+        for outcome in outcomes {
+            if let Some(said) = self.finish(outcome) {
+                self.say(said);
+            }
+        }
+        if !self.tasks.is_busy() {
+            let next = self.source.shown.image.next_comparison(&self.settings.image);
+            let started = next.and_then(|job| job.map_or(Ok(()), |job| self.start(job)));
+            if let Err(problem) = started {
+                self.settings.image.layer = crate::value::Layer::Difference;
+                self.say(Err(problem));
+            }
+        }
+        any
+    }
+
+    /// Takes in what a background task has brought back; the answer is for the user.
+    fn finish(&mut self, outcome: Outcome) -> Option<Result<String, String>> {
+        match outcome {
+            Ok(TaskResult::Done(text) | TaskResult::Image { finding: Finding::Done(text), .. }) => {
+                Some(Ok(text))
+            }
+            Ok(TaskResult::Image { of, finding }) => {
+                let shown = &mut self.source.shown;
+                let image = (of == shown.serial()).then_some(&mut shown.image)?;
+                image.finish(finding, &mut self.settings.image)
+            }
+            Ok(TaskResult::Opened { name, stage }) => {
+                self.look_at(Source::file(&name, *stage));
+                None
+            }
+            Err(problem) => Some(Err(problem)),
+        }
+    }
+
+    /// Shows the others where this viewer looks, if the user wishes.
+    fn appear(&mut self) {
+        let Self { settings, source: Source { origin, status, shown, .. }, .. } = self;
+        let Origin::Daemon(daemon) = origin else { return };
+        if !status.is_connected() {
             return;
         }
-        if matches!(order, common::Order::Explorer(_)) {
-            // What comes of it is at the end of the timeline.
-            self.scrub = None;
+        daemon.appear(|| {
+            if !settings.window.seen {
+                return Appearance::default();
+            }
+            let lens = shown.camera.lens(1.0);
+            let far = lens.eye + 0.5 * shown.camera.bounds().radius() * lens.forward;
+            let gaze = Gaze { eye: lens.eye.into(), target: far.into() };
+            Appearance { gaze: Some(gaze), filter: settings.filter.whole().to_string() }
+        });
+    }
+
+    /// Follows a command about the file of paths.
+    fn play(&mut self, command: PlayCommand) {
+        if !self.source.play(command) {
+            let problem = "There is no file of paths to play; open one with `viewer-client FILE`.";
+            self.say(Err(problem.to_owned()));
         }
-        self.orders += 1;
-        let sent = self.link.as_ref().is_some_and(|link| link.order(self.orders, order));
-        if !sent {
-            self.status.steering.remark(Err("not sent: there is no connection".to_owned()));
-        }
+    }
+
+    fn send(&mut self, order: Order) {
+        let Source { origin, status, .. } = &mut self.source;
+        let problem = match origin {
+            Origin::File(_) => {
+                "A file of paths has no daemon whose chains could be steered or explored; open the \
+                 scene itself with `viewer-client --scene SCENE`."
+            }
+            Origin::Nothing => "There is no daemon to steer; connect to one first.",
+            Origin::Daemon(daemon) => {
+                if matches!(order, Order::Explorer(_)) {
+                    // What comes of it is at the end of the timeline.
+                    status.steering.focus.scrub = None;
+                }
+                if !daemon.order(order) {
+                    let problem = "not sent: there is no connection".to_owned();
+                    status.steering.remark(Err(problem));
+                }
+                return;
+            }
+        };
+        self.say(Err(problem.to_owned()));
     }
 
     /// Shows everything, and does what the user asks for.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
-        let theme = if self.settings.layout.dark { egui::Theme::Dark } else { egui::Theme::Light };
+        let theme = match self.settings.window.theme {
+            Theme::Dark => egui::Theme::Dark,
+            Theme::Light => egui::Theme::Light,
+        };
         ui.ctx().set_theme(theme);
-        ui.ctx().set_zoom_factor(f32::from(self.settings.layout.scale) / 100.0);
-        self.desk.work(ui.ctx(), &mut self.darkroom, &mut self.status);
-        self.play_on(ui.ctx());
-        let was_through = self.camera.is_through();
+        ui.ctx().set_zoom_factor(f32::from(self.settings.window.scale) / 100.0);
+        if let Err(problem) = self.desktop.work(ui.ctx(), &mut self.tasks) {
+            self.say(Err(problem));
+        }
+        let seconds = ui.ctx().input(|input| input.stable_dt).min(LONGEST_FRAME);
+        self.source.play_on(seconds);
         let mut commands = Vec::new();
         let mut panels = std::mem::take(&mut self.panels);
-        let world = self.world();
+        let seen = self.source.suited(&self.settings);
+        let world = self.world(&seen);
         keys::pressed(ui.ctx(), &world, &mut commands);
         panel::show(&mut panels, ui, &world, &mut commands);
         self.panels = panels;
@@ -374,129 +395,75 @@ impl Viewer {
         for command in commands {
             self.apply(command);
         }
-        self.stale.aids |= self.camera.is_through() != was_through;
     }
 
-    /// All that panels may read.
-    fn world(&self) -> World<'_> {
+    /// All that panels may read; `seen` are the settings as the source suits them.
+    fn world<'a>(&'a self, seen: &'a Settings) -> World<'a> {
+        let Source { status, shown, .. } = &self.source;
+        let playback = self.source.playback();
         World {
-            settings: &self.settings,
-            camera: &self.camera,
-            status: &self.status,
-            store: &self.store,
-            film: &self.darkroom.film,
-            reference: self.darkroom.reference.as_ref(),
-            flip: self.darkroom.flip.as_ref(),
-            selection: self.selection.as_ref(),
-            moment: match &self.playback {
+            settings: seen,
+            camera: &shown.camera,
+            status,
+            store: &shown.store,
+            film: &shown.image.film,
+            reference: shown.image.reference.as_ref(),
+            flip: shown.image.flip.as_ref(),
+            selection: shown.selection.as_ref(),
+            moment: match playback {
                 Some(playback) => playback.moment(),
-                None => self.status.steering.focus.moment(self.scrub),
+                None => status.steering.focus.moment(),
             },
-            playback: self.playback.as_ref(),
-            counted: self.counted.as_ref(),
-            scrub: self.scrub,
-            waiting: self.waiting.paths(),
-            recent: &self.desk.habits.recent,
-            has_home: self.desk.home.is_some(),
-            model: self.model.as_ref(),
+            playback,
+            counted: shown.counted.as_ref(),
+            scrub: status.steering.focus.scrub,
+            waiting: self.inbox().map_or(0, Inbox::paths),
+            recent: &self.desktop.preferences.recent,
+            has_home: self.desktop.home.is_some(),
+            model: shown.model.as_ref(),
+            filter_scene: &shown.filter_scene,
             now: Instant::now(),
         }
     }
 
     /// Countdowns run by themselves.
-    fn keep_time(&mut self, ctx: &egui::Context) {
-        if let Some(notice) = &self.status.notice {
+    fn keep_time(&self, ctx: &egui::Context) {
+        if let Some(notice) = &self.source.status.notice {
             let left = NOTICE_TIME.saturating_sub(notice.at.elapsed());
             if !left.is_zero() {
                 ctx.request_repaint_after(left);
             }
         }
-        if self.filter_changed.is_some() {
-            ctx.request_repaint_after(arrival::HAND);
+        if self.source.as_daemon().is_some_and(Daemon::filter_is_changing) {
+            ctx.request_repaint_after(HAND);
         }
-        if self.waiting.is_due(self.settings.cloud.threshold as usize) {
+        if self.source.is_moving(&self.settings) {
             ctx.request_repaint();
-        } else if self.darkroom.is_busy() {
+        } else if self.tasks.is_busy() {
             ctx.request_repaint_after(Duration::from_millis(50));
-        } else if matches!(self.status.link, LinkState::Disconnected { .. }) {
+        } else if matches!(self.source.status.link, LinkState::Disconnected { .. }) {
             ctx.request_repaint_after(Duration::from_millis(250));
         }
     }
 
     /// Brings the graphics card up to date, as far as one frame allows. True when more is to come.
     pub fn upload(&mut self, gpu: &RenderState) -> bool {
-        let mut egui_renderer = gpu.renderer.write();
-        let Some(renderer) = egui_renderer.callback_resources.get_mut::<Renderer>() else {
-            return false;
-        };
-        if std::mem::take(&mut self.stale.surfaces) {
-            let mesh = self.model.as_ref().map(|model| &model.mesh);
-            let textures = mesh.map(|mesh| mesh.textures.as_slice()).unwrap_or_default();
-            renderer.set_mesh(&mesh.map(corners).unwrap_or_default(), textures);
-        }
-        if std::mem::take(&mut self.stale.aids) {
-            renderer.set_aids(&self.aids());
-        }
-        if !std::mem::replace(&mut self.uploaded_any, true) {
-            renderer.retain_from(u64::MAX);
-        }
-        renderer.retain_from(self.store.first_serial());
-        let more = upload_paths(&self.store, renderer);
-        renderer.set_uploading(more);
-        more
-    }
-
-    fn aids(&self) -> Vec<shaders::LinePoint> {
-        let Some(Model { bounds, .. }) = self.model else { return Vec::new() };
-        let camera = self.camera.render_camera().filter(|_| !self.camera.is_through());
-        drawing_aids(bounds, camera, self.camera.up(), self.settings.scene.aids)
+        self.on_card.update(gpu, &self.source.shown, &self.settings)
     }
 
     /// Shows paths without a scene: only the box round them is known.
     pub fn show_bounds(&mut self, bounds: Bounds) {
-        self.set_model(Some(Model { mesh: common::SceneMesh::default(), bounds }));
+        let model = Model { mesh: common::SceneMesh::default(), bounds };
+        self.source.set_model(Some(model), &mut self.settings);
+        self.go_on();
     }
 
     /// The box round the scene, once it has come.
     pub fn bounds(&self) -> Option<Bounds> {
-        self.model.as_ref().map(|model| model.bounds)
+        self.source.shown.model.as_ref().map(|model| model.bounds)
     }
-}
-
-/// The first two words of a command: what it concerns.
-fn kind(text: &str) -> &str {
-    let second = text.find(' ').map_or(text.len(), |i| i + 1);
-    let end = text[second..].find(' ').map_or(text.len(), |i| second + i);
-    &text[..end]
-}
-
-/// Which paths are drawn when those that the filter leaves out have this opacity.
-fn drawn(dim: f32) -> Drawn {
-    if dim > 0.0 { Drawn::All } else { Drawn::Matched }
-}
-
-/// Appends what is missing on the graphics card, newest pages first, since they are looked at.
-fn upload_paths(store: &Store, renderer: &mut Renderer) -> bool {
-    let mut room = UPLOAD_POINTS;
-    let mut points = Vec::new();
-    for page in store.pages().rev() {
-        let whole = Uploaded { revision: page.revision(), paths: page.paths().len() };
-        let there = renderer.uploaded(page.serial());
-        if there == Some(whole) {
-            continue;
-        }
-        if room == 0 {
-            return true;
-        }
-        let skip = there.filter(|t| t.revision == whole.revision).map_or(0, |t| t.paths);
-        points.clear();
-        points.extend(page.points(skip, store.drawn()));
-        renderer.append_points(page.serial(), whole, &points);
-        room = room.saturating_sub(points.len());
+    /// Triangles of the scene on screen, once it has come.
+    pub fn triangles(&self) -> Option<usize> {
+        self.source.shown.model.as_ref().map(|model| model.mesh.triangles.len())
     }
-    false
-}
-
-fn budget_bytes(mebibytes: u32) -> usize {
-    (mebibytes as usize) << 20
 }

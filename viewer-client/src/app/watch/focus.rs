@@ -5,9 +5,9 @@ use std::collections::VecDeque;
 use anyhow::bail;
 use common::{
     Author, ChainState, ExplorerState, FocusOutcome, FocusPath, FocusStep, LeaseEvent, LeaseNotice,
-    Notice, Order, OrderReply, Pace, Presence, Role, StrategyId,
+    Notice, Order, OrderReply, Pace, Presence, Role, StrategyId, TracerEvent,
 };
-use proto::{NumberedOrder, TracerEvent, ViewerEvent};
+use proto::{NumberedOrder, ViewerEvent};
 use serde_json::{Value, json};
 
 use super::{Names, inspect};

@@ -4,8 +4,8 @@ use std::io::{self, Write as _};
 use std::time::Duration;
 
 use anyhow::{Context as _, bail};
-use common::{Notice, PathDetail, PathId};
-use proto::{TracerEvent, ViewerEvent};
+use common::{Notice, PathDetail, PathId, TracerEvent};
+use proto::ViewerEvent;
 use serde_json::{Value, json};
 
 use crate::source::connection::{Session, SessionError};

@@ -7,9 +7,10 @@ use std::io::{self, Write as _};
 
 use anyhow::{Context as _, bail};
 use common::{
-    BatchOrigin, FilterCounts, FilterReply, Gap, PathBatch, PathId, Role, Statistics, Welcome,
+    BatchOrigin, FilterCounts, FilterReply, Gap, PathBatch, PathId, Role, Statistics, TracerEvent,
+    Welcome,
 };
-use proto::{TracerEvent, WantedFilter};
+use proto::WantedFilter;
 use serde_json::{Value, json};
 
 use crate::app::cli::WatchArgs;
@@ -25,7 +26,7 @@ pub fn run(args: &WatchArgs) -> anyhow::Result<()> {
 }
 
 async fn watch(args: &WatchArgs) -> anyhow::Result<()> {
-    let filter = args.filter.clone().map(|text| WantedFilter { revision: 1, text });
+    let filter = args.filter.clone().map(|filter| WantedFilter { revision: 1, filter });
     let peer = args.trust.peer(args.address.clone())?;
     let role = if args.order.is_empty() { Role::Observer } else { Role::Driver };
     let name = own_name("Lvis watch");

@@ -2,7 +2,7 @@
 
 use shaders::BLEND;
 
-use super::cover::Cover;
+use super::cover::{Cover, Program};
 use super::pipeline::{FrameGroup, Ink, module};
 use super::target::Sums;
 
@@ -17,7 +17,8 @@ impl Blend {
     pub(super) fn new(device: &wgpu::Device, frame: &FrameGroup) -> Self {
         let module = module(device, BLEND);
         let cover = |label, fragment, textures| {
-            Cover::new(device, frame, label, (&module, "vs_blend", fragment), Ink::Over, textures)
+            let program = Program { module: &module, vertex: "vs_blend", fragment };
+            Cover::new(device, frame, label, program, Ink::Over, textures)
         };
         Self { sums: cover("blend", "fs_blend", 2), sheet: cover("sheet", "fs_sheet", 1) }
     }

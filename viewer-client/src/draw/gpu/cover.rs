@@ -10,17 +10,26 @@ pub(super) struct Cover {
     label: &'static str,
 }
 
+/// The two shaders of a pipeline.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Program<'a> {
+    pub(super) module: &'a wgpu::ShaderModule,
+    pub(super) vertex: &'static str,
+    pub(super) fragment: &'static str,
+}
+
 impl Cover {
     /// With a vertex and a fragment shader of a module, the latter of which reads so many `textures`.
     pub(super) fn new(
         device: &wgpu::Device,
         frame: &FrameGroup,
         label: &'static str,
-        (module, vertex, fragment): (&wgpu::ShaderModule, &'static str, &'static str),
+        program: Program<'_>,
         ink: Ink,
         textures: u32,
     ) -> Self {
         let layout = layout(device, label, textures);
+        let Program { module, vertex, fragment } = program;
         let recipe = Recipe {
             label,
             module,

@@ -68,7 +68,8 @@ impl Kit {
     pub(super) fn draw(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        (target, picture): (&Target, &Picture),
+        target: &Target,
+        picture: &Picture,
         steps: &[(Layer, PageRange)],
         part: Part,
     ) {
@@ -107,8 +108,8 @@ impl Kit {
         steps: &[(Layer, PageRange)],
         crossing: Crossing,
     ) {
-        for step in steps {
-            self.lines.draw_page(pass, &self.pages, *step, crossing);
+        for &(layer, range) in steps {
+            self.lines.draw_page(pass, &self.pages, layer, range, crossing);
         }
     }
 

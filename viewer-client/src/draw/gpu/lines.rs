@@ -31,7 +31,8 @@ pub(super) struct Lines {
 /// stand in for a first instance, which WebGL 2 does not have.
 fn bind(
     pass: &mut wgpu::RenderPass<'_>,
-    (buffer, points): (&wgpu::Buffer, usize),
+    buffer: &wgpu::Buffer,
+    points: usize,
     first: usize,
 ) -> u32 {
     let start = first as u64 * STRIDE;
@@ -97,7 +98,7 @@ impl Lines {
     pub(super) fn draw_aids(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Some((buffer, points)) = &self.aids else { return };
         pass.set_pipeline(&self.stacked.visible);
-        let points = bind(pass, (buffer, *points), 0);
+        let points = bind(pass, buffer, *points, 0);
         pass.draw(0..4, 0..points.saturating_sub(1));
     }
 
@@ -106,10 +107,11 @@ impl Lines {
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         pages: &Pages,
-        (layer, range): (Layer, PageRange),
+        layer: Layer,
+        range: PageRange,
         crossing: Crossing,
     ) {
-        let Some(page) = pages.on_card(range.serial) else { return };
+        let Some((buffer, points)) = pages.on_card(range.serial) else { return };
         let pipelines = match crossing {
             Crossing::Stacked => &self.stacked,
             Crossing::Weighed => &self.weighed,
@@ -119,7 +121,7 @@ impl Lines {
             Layer::Visible => (&pipelines.visible, 1),
             Layer::Dots => (&pipelines.dots, 0),
         };
-        let points = bind(pass, page, range.first);
+        let points = bind(pass, buffer, points, range.first);
         if points > less {
             pass.set_pipeline(pipeline);
             pass.draw(0..4, 0..points - less);

@@ -34,9 +34,9 @@ impl Picture {
         let view = |picture: &Self| {
             let mut uniforms = picture.uniforms;
             // The newest ordinal and the range of radiances change with every path.
-            uniforms.count.x = 0;
-            uniforms.tone.x = 0.0;
-            uniforms.tone.y = 0.0;
+            uniforms.newest = 0;
+            uniforms.darkest = 0.0;
+            uniforms.inverse_range = 0.0;
             uniforms
         };
         self.size == other.size
@@ -49,8 +49,8 @@ impl Picture {
     /// The layers that are worth drawing, in their order.
     pub(super) fn layers(&self) -> impl Iterator<Item = Layer> {
         let uniforms = &self.uniforms;
-        let hidden = self.lines && self.surfaces && uniforms.line.z > 0.0;
-        let dots = uniforms.fade.w > 0.0 || uniforms.tone.z > 0.0;
+        let hidden = self.lines && self.surfaces && uniforms.hidden_opacity > 0.0;
+        let dots = uniforms.start_radius > 0.0 || uniforms.dot_radius > 0.0;
         [(hidden, Layer::Hidden), (self.lines, Layer::Visible), (dots, Layer::Dots)]
             .into_iter()
             .filter_map(|(wanted, layer)| wanted.then_some(layer))

@@ -5,7 +5,8 @@ use anyhow::Context as _;
 /// Submits what is encoded, and reads what it leaves in a texture: the bytes of its pixels, of which
 /// each has so many, row by row from the top.
 pub fn read_back(
-    (device, queue): (&wgpu::Device, &wgpu::Queue),
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
     mut encoder: wgpu::CommandEncoder,
     source: wgpu::TexelCopyTextureInfo<'_>,
     pixel_bytes: u32,

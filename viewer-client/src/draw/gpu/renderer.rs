@@ -197,7 +197,7 @@ impl Renderer {
         };
         self.composite.set_picture(&self.kit.device, target.resolved());
         self.kit.frame.write(&self.kit.queue, &drawn.uniforms);
-        self.kit.draw(encoder, (&target, drawn), &drawn.steps(), Part { first: true, last: true });
+        self.kit.draw(encoder, &target, drawn, &drawn.steps(), Part { first: true, last: true });
         let (picture, content) = (picture.clone(), self.content);
         self.shown = Some(Shown { target, picture, content, whole });
     }
@@ -217,7 +217,7 @@ impl Renderer {
         } else {
             self.shown.take().filter(fits).map(|shown| shown.target)
         };
-        let whole = software.go_on(&self.kit, (wanted, self.content), &mut spare);
+        let whole = software.go_on(&self.kit, wanted, self.content, &mut spare);
         if shows_whole && !whole {
             return;
         }
@@ -250,7 +250,7 @@ impl Renderer {
         }
         let part = Part { first: coming.next == 0, last: end == coming.steps.len() };
         let steps = coming.steps.get(coming.next..end).unwrap_or_default();
-        self.kit.draw(encoder, (&coming.target, &coming.picture), steps, part);
+        self.kit.draw(encoder, &coming.target, &coming.picture, steps, part);
         coming.next = end;
         if part.last {
             let Coming { target, picture, content, .. } = coming;

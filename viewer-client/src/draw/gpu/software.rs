@@ -75,7 +75,8 @@ impl Software {
     pub(super) fn go_on(
         &mut self,
         kit: &Kit,
-        (wanted, content): (&Picture, u64),
+        wanted: &Picture,
+        content: u64,
         spare: &mut Option<Target>,
     ) -> bool {
         let begun = Instant::now();
@@ -173,7 +174,7 @@ fn draw_surfaces(kit: &Kit, picture: &Picture, spare: Option<Target>) -> (Target
         aspect: wgpu::TextureAspect::DepthOnly,
         ..target.depth().as_image_copy()
     };
-    let read = read_back((&kit.device, &kit.queue), encoder, source, size_of::<f32>() as u32);
+    let read = read_back(&kit.device, &kit.queue, encoder, source, size_of::<f32>() as u32);
     let bytes = read.unwrap_or_else(|error| {
         tracing::warn!("surfaces do not hide paths: {error:#}");
         Vec::new()

@@ -51,7 +51,7 @@ impl Target {
         samples: u32,
         crossing: Crossing,
     ) -> Self {
-        let layer = |label, format| Layer::new(device, (label, format), size, samples);
+        let layer = |label, format| Layer::new(device, label, format, size, samples);
         let mut usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
         if samples == 1 {
             // The processor, too, needs to know what surfaces hide.
@@ -59,7 +59,7 @@ impl Target {
         }
         Self {
             color: layer("picture", COLOR_FORMAT),
-            depth: view(device, ("picture depth", DEPTH_FORMAT), size, samples, usage),
+            depth: view(device, "picture depth", DEPTH_FORMAT, size, samples, usage),
             sums: (crossing == Crossing::Weighed).then(|| Sums {
                 color: layer("sum of colours", COLOR_FORMAT),
                 weight: layer("sum of weights", WEIGHT_FORMAT),
@@ -135,15 +135,16 @@ impl Target {
 impl Layer {
     fn new(
         device: &wgpu::Device,
-        kind: (&'static str, wgpu::TextureFormat),
+        label: &'static str,
+        format: wgpu::TextureFormat,
         size: [u32; 2],
         samples: u32,
     ) -> Self {
         let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
         let read = drawn | wgpu::TextureUsages::TEXTURE_BINDING;
         Self {
-            samples: (samples > 1).then(|| view(device, kind, size, samples, drawn)),
-            resolved: view(device, kind, size, 1, read),
+            samples: (samples > 1).then(|| view(device, label, format, size, samples, drawn)),
+            resolved: view(device, label, format, size, 1, read),
         }
     }
 
@@ -165,7 +166,8 @@ impl Layer {
 
 fn view(
     device: &wgpu::Device,
-    (label, format): (&'static str, wgpu::TextureFormat),
+    label: &'static str,
+    format: wgpu::TextureFormat,
     size: [u32; 2],
     sample_count: u32,
     usage: wgpu::TextureUsages,

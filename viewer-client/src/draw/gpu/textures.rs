@@ -30,7 +30,7 @@ impl Textures {
             mipmap_filter: wgpu::MipmapFilterMode::Linear,
             ..wgpu::SamplerDescriptor::default()
         });
-        let group = group(device, queue, (&layout, &sampler), &[]);
+        let group = group(device, queue, &layout, &sampler, &[]);
         Self { layout, group, sampler }
     }
 
@@ -40,14 +40,15 @@ impl Textures {
         queue: &wgpu::Queue,
         list: &[TexturePreview],
     ) {
-        self.group = group(device, queue, (&self.layout, &self.sampler), list);
+        self.group = group(device, queue, &self.layout, &self.sampler, list);
     }
 }
 
 fn group(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
-    (layout, sampler): (&wgpu::BindGroupLayout, &wgpu::Sampler),
+    layout: &wgpu::BindGroupLayout,
+    sampler: &wgpu::Sampler,
     list: &[TexturePreview],
 ) -> wgpu::BindGroup {
     let most = device.limits().max_texture_array_layers as usize;
@@ -72,7 +73,7 @@ fn group(
     let shown = if list.is_empty() { &white } else { list };
     for (layer, preview) in shown.iter().enumerate() {
         for (level, (side, texels)) in levels(preview, side).into_iter().enumerate() {
-            write(queue, &texture, (layer, level), side, &texels);
+            write(queue, &texture, layer, level, side, &texels);
         }
     }
     let view = texture.create_view(&wgpu::TextureViewDescriptor {
@@ -95,7 +96,8 @@ fn group(
 fn write(
     queue: &wgpu::Queue,
     texture: &wgpu::Texture,
-    (layer, level): (usize, usize),
+    layer: usize,
+    level: usize,
     side: u32,
     texels: &[[u8; 4]],
 ) {

@@ -298,7 +298,7 @@ impl<'a> Inks<'a> {
     fn new(brush: Brush<'a>, mark: &Mark, length: f32) -> Self {
         // Glow takes less away of what lies behind; weighed paths have none.
         let glow = match brush.crossing {
-            Crossing::Stacked => brush.shader.frame.fade.z,
+            Crossing::Stacked => brush.shader.frame.glow,
             Crossing::Weighed => 0.0,
         };
         let inked = |end: End| End {

@@ -38,7 +38,7 @@ pub(super) struct Marker<'a> {
 
 impl<'a> Marker<'a> {
     pub(super) fn new(shader: Shader<'a>, layer: Layer) -> Self {
-        Self { shader, layer, half_size: 0.5 * shader.frame.viewport.xy() }
+        Self { shader, layer, half_size: 0.5 * shader.frame.size }
     }
 
     /// Makes the marks of those `points` that begin in the first `count`, in their order.
@@ -70,12 +70,12 @@ impl<'a> Marker<'a> {
             b = b.lerp(a, end.side / (end.side - start.side));
         }
         if end.is_last() {
-            color_a.w *= frame.line.w + (1.0 - frame.line.w) * 0.22;
-            color_b.w *= frame.line.w;
+            color_a.w *= frame.lens_opacity + (1.0 - frame.lens_opacity) * 0.22;
+            color_b.w *= frame.lens_opacity;
         }
         color_a.w *= self.shader.cue(a.w);
         color_b.w *= self.shader.cue(b.w);
-        let near = frame.eye.w;
+        let near = frame.near;
         if a.w < near && b.w < near {
             return None;
         }
@@ -86,24 +86,24 @@ impl<'a> Marker<'a> {
             let t = (near - b.w) / (a.w - b.w);
             (b, color_b) = (b.lerp(a, t), color_b.lerp(color_a, t));
         }
-        let mut opacity = frame.line.x.min(1.0);
+        let mut opacity = frame.line_width.min(1.0);
         if self.layer == Layer::Hidden {
-            opacity *= frame.line.z;
+            opacity *= frame.hidden_opacity;
         }
         self.seen(Mark {
             a: self.end(a, color_a, opacity),
             b: self.end(b, color_b, opacity),
-            half_width: 0.5 * frame.line.x.max(1.0),
+            half_width: 0.5 * frame.line_width.max(1.0),
         })
     }
 
     fn dot(self, point: Shaded, next: Option<Shaded>) -> Option<Mark> {
         let frame = self.shader.frame;
         let lens_follows = next.is_some_and(Shaded::is_last);
-        let wanted = frame.count.z == 0 || point.starts() || lens_follows;
-        let radius = if point.starts() { frame.fade.w } else { frame.tone.z };
+        let wanted = frame.ends_only == 0 || point.starts() || lens_follows;
+        let radius = if point.starts() { frame.start_radius } else { frame.dot_radius };
         let skipped = point.is_last() || !wanted || radius <= 0.0;
-        if skipped || point.side < 0.0 || point.clip.w < frame.eye.w {
+        if skipped || point.side < 0.0 || point.clip.w < frame.near {
             return None;
         }
         let mut color = point.color;

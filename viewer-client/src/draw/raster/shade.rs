@@ -50,33 +50,33 @@ impl Shader<'_> {
         let position = Vec3::from(point.position);
         let [role, ..] = point.info;
         let mut rgb = self.path_color(point);
-        if frame.tone.w > 0.0 && role & role::START != 0 {
+        if frame.tint_ends == 1 && role & role::START != 0 {
             rgb = rgb.lerp(START_TINT, 0.8);
-        } else if frame.tone.w > 0.0 && role & role::LAST != 0 {
+        } else if frame.tint_ends == 1 && role & role::LAST != 0 {
             rgb = rgb.lerp(END_TINT, 0.8);
         }
-        let mut bright = if frame.count.y == 0 {
+        let mut bright = if frame.color_mode == 0 {
             0.22 + (1.0 - 0.22) * self.brightness(point.color[3])
         } else {
             0.8
         };
         if role & role::DIMMED != 0 {
-            bright *= frame.cue.w;
+            bright *= frame.unmatched_opacity;
         }
-        let fresh = frame.fade.y + (1.0 - frame.fade.y) * self.freshness(point.ordinal);
+        let fresh = frame.faded + (1.0 - frame.faded) * self.freshness(point.ordinal);
         let mut clip = frame.view_projection * position.extend(1.0);
         clip.z *= DEPTH_BIAS;
         Shaded {
             clip,
             side: frame.clip.dot(position.extend(1.0)),
-            color: rgb.extend(frame.line.y * fresh * bright),
+            color: rgb.extend(frame.line_opacity * fresh * bright),
             role,
         }
     }
 
     /// How much is left of an opacity at a distance along the view.
     pub(super) fn cue(self, distance: f32) -> f32 {
-        1.0 - 0.95 * self.frame.cue.x * self.depth(distance)
+        1.0 - 0.95 * self.frame.cue_strength * self.depth(distance)
     }
 
     /// What a path weighs at a distance, where paths are weighed against each other.
@@ -86,12 +86,12 @@ impl Shader<'_> {
 
     /// A distance along the view from 0, where the cue begins, to 1.
     fn depth(self, distance: f32) -> f32 {
-        ((distance - self.frame.cue.y) * self.frame.cue.z).clamp(0.0, 1.0)
+        ((distance - self.frame.cue_begin) * self.frame.cue_inverse_reach).clamp(0.0, 1.0)
     }
 
     /// The tint of the last vertex that is seen, where dots mark ends only.
     pub(super) fn end_of(self, color: Vec4) -> Vec4 {
-        let tinted = self.frame.count.z == 1 && self.frame.tone.w > 0.0;
+        let tinted = self.frame.ends_only == 1 && self.frame.tint_ends == 1;
         if tinted { color.truncate().lerp(END_TINT, 0.8).extend(color.w) } else { color }
     }
 
@@ -99,7 +99,7 @@ impl Shader<'_> {
         let frame = self.frame;
         let [kind, strategy, hues, throughput] = point.info;
         let palette = |i: u8| frame.palette[usize::from(i & 15)].truncate();
-        match frame.count.y {
+        match frame.color_mode {
             1 => palette(strategy),
             2 => {
                 let edges = f32::from(strategy >> 4).max(1.0);
@@ -108,13 +108,13 @@ impl Shader<'_> {
             }
             3 => {
                 let place = self.brightness(point.color[3]);
-                self.scaled(place, ((place - 1.0) / frame.tone.y.max(1e-6)).exp2())
+                self.scaled(place, ((place - 1.0) / frame.inverse_range.max(1e-6)).exp2())
             }
             4 => self.ramp(self.freshness(point.ordinal)),
             5 => palette(kind >> role::KIND_SHIFT),
             6 => palette(hues),
             7 => palette(hues >> 4),
-            8 => frame.constant.truncate(),
+            8 => frame.constant,
             9 if throughput == 0 => UNKNOWN,
             9 => {
                 let [codes, lowest] = THROUGHPUT_CODE;
@@ -132,7 +132,7 @@ impl Shader<'_> {
 
     /// A colour of the ramp, on whichever scale is chosen.
     fn scaled(self, logarithmic: f32, linear: f32) -> Vec3 {
-        self.ramp(if self.frame.count.w == 1 { logarithmic } else { linear })
+        self.ramp(if self.frame.logarithmic == 1 { logarithmic } else { linear })
     }
 
     fn ramp(self, place: f32) -> Vec3 {
@@ -143,12 +143,12 @@ impl Shader<'_> {
     }
 
     fn brightness(self, code: u8) -> f32 {
-        let tone = self.frame.tone;
-        ((decode_radiance(code) - tone.x) * tone.y).clamp(0.0, 1.0)
+        let Self { frame } = self;
+        ((decode_radiance(code) - frame.darkest) * frame.inverse_range).clamp(0.0, 1.0)
     }
 
     fn freshness(self, ordinal: u32) -> f32 {
-        let age = self.frame.count.x.wrapping_sub(ordinal) & ((1 << ORDINAL_BITS) - 1);
-        (-(age as f32) / self.frame.fade.x.max(1.0)).exp()
+        let age = self.frame.newest.wrapping_sub(ordinal) & ((1 << ORDINAL_BITS) - 1);
+        (-(age as f32) / self.frame.fade_age.max(1.0)).exp()
     }
 }

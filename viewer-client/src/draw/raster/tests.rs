@@ -1,7 +1,7 @@
 //! Strokes and dots on a canvas of few pixels, where their places are known.
 
 use bytemuck::Zeroable as _;
-use glam::{Mat4, UVec4, Vec4};
+use glam::{Mat4, Vec2, Vec4};
 use rand_core::{Rng as _, SeedableRng as _};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use shaders::{FrameUniforms, LinePoint, encode_radiance, role};
@@ -21,13 +21,18 @@ fn frame() -> FrameUniforms {
             Vec4::new(0.0, 0.0, -0.5, 0.0),
             Vec4::new(-1.0, 1.0, 0.5, 1.0),
         ),
-        eye: Vec4::new(0.0, 0.0, 0.0, 0.01),
-        viewport: Vec4::new(width, height, width.recip(), height.recip()),
-        line: Vec4::new(1.0, 1.0, 0.5, 1.0),
-        fade: Vec4::new(1e9, 1.0, 0.0, 0.0),
+        near: 0.01,
+        size: Vec2::new(width, height),
+        line_width: 1.0,
+        line_opacity: 1.0,
+        hidden_opacity: 0.5,
+        lens_opacity: 1.0,
+        fade_age: 1e9,
+        faded: 1.0,
         // Every radiance is the brightest.
-        tone: Vec4::new(-100.0, 1.0, 0.0, 0.0),
-        count: UVec4::new(0, 0, 0, 1),
+        darkest: -100.0,
+        inverse_range: 1.0,
+        logarithmic: 1,
         ..FrameUniforms::zeroed()
     }
 }
@@ -72,7 +77,7 @@ fn random_paths(rng: &mut Xoshiro256PlusPlus, count: usize, reach: f32) -> Vec<L
 fn strokes_cover_their_width_times_their_length() {
     let mut frame = frame();
     for width in [1.0, 2.5, 9.0] {
-        frame.line.x = width;
+        frame.line_width = width;
         for degrees in (0_u16..180).step_by(7) {
             let (sin, cos) = f32::from(degrees).to_radians().sin_cos();
             let [a, b] =
@@ -92,7 +97,7 @@ fn strokes_cover_their_width_times_their_length() {
 fn faint_strokes_below_a_pixel_are_fainter_instead() {
     let mut frame = frame();
     let points = segment([20.0, 30.5], [120.0, 30.5]);
-    frame.line.x = 0.25;
+    frame.line_width = 0.25;
     let area = covered(&drawn(&points, &frame, Layer::Visible));
     assert!((area - 0.25 * 101.0).abs() < 0.5, "{area}");
     let hidden = covered(&drawn(&points, &frame, Layer::Hidden));
@@ -102,7 +107,7 @@ fn faint_strokes_below_a_pixel_are_fainter_instead() {
 #[test]
 fn dots_are_as_large_as_they_are_wanted() {
     let mut frame = frame();
-    (frame.fade.w, frame.tone.z) = (6.0, 3.0);
+    (frame.start_radius, frame.dot_radius) = (6.0, 3.0);
     let path =
         [point([40.2, 50.7], role::START), point([90.0, 50.0], 0), point([0.0; 2], role::LAST)];
     let area = covered(&drawn(&path, &frame, Layer::Dots));
@@ -160,8 +165,8 @@ fn newer_paths_lie_on_top_and_nearer_surfaces_hide_them() {
 fn neither_threads_nor_parts_change_a_pixel() {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(7);
     let mut frame = frame();
-    frame.line.y = 0.3;
-    (frame.fade.w, frame.tone.z) = (4.0, 2.0);
+    frame.line_opacity = 0.3;
+    (frame.start_radius, frame.dot_radius) = (4.0, 2.0);
     let points = random_paths(&mut rng, 300, 120.0);
     for crossing in [Crossing::Stacked, Crossing::Weighed] {
         let picture = |threads: usize, parts: usize| {
@@ -190,7 +195,7 @@ fn neither_threads_nor_parts_change_a_pixel() {
 fn pixels_that_are_full_stay_as_they_are() {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(3);
     let mut frame = frame();
-    frame.line.x = 3.0;
+    frame.line_width = 3.0;
     let points = random_paths(&mut rng, 3000, 100.0);
     let canvas = drawn(&points, &frame, Layer::Visible);
     assert!(canvas.open.contains(&0), "some tiles are full");
@@ -218,8 +223,8 @@ fn pixels_that_are_full_stay_as_they_are() {
 #[test]
 fn what_has_no_place_is_not_drawn() {
     let mut frame = frame();
-    frame.line.x = 4.0;
-    (frame.fade.w, frame.tone.z) = (5.0, 5.0);
+    frame.line_width = 4.0;
+    (frame.start_radius, frame.dot_radius) = (5.0, 5.0);
     let odd = [f32::NAN, f32::INFINITY, -f32::INFINITY, f32::MAX, -f32::MAX, 1e20, 0.0, 75.0];
     for a in odd {
         for b in odd {

@@ -10,15 +10,15 @@ use crate::panel::widgets::capitalised;
 const HIGHEST: f32 = 320.0;
 
 /// A button with every kind of condition; answers the one that was chosen.
-pub(super) fn menu(ui: &mut Ui, label: &str, context: &Context) -> Option<Filter> {
+pub(super) fn menu(ui: &mut Ui, label: &str, context: &Context<'_>) -> Option<Filter> {
     let menu = ui.menu_button(label, |ui| choices(ui, context));
     menu.response.on_hover_text("Add a condition");
     menu.inner.flatten()
 }
 
 /// The menu's lines.
-pub(super) fn choices(ui: &mut Ui, context: &Context) -> Option<Filter> {
-    lines(ui, Leaf::proposals(&context.scene, context.spot)).map(Filter::Leaf)
+pub(super) fn choices(ui: &mut Ui, context: &Context<'_>) -> Option<Filter> {
+    lines(ui, Leaf::proposals(context.scene, context.spot)).map(Filter::Leaf)
 }
 
 /// The lines of a menu, some of them in menus of their own; answers what was chosen.

@@ -14,7 +14,11 @@ use crate::value::theme;
 
 /// Shows a condition or a part of it; true when it was changed. A change that makes no sense is not
 /// made.
-pub(super) fn edit<T: Described + Clone>(ui: &mut Ui, edited: &mut T, context: &Context) -> bool {
+pub(super) fn edit<T: Described + Clone>(
+    ui: &mut Ui,
+    edited: &mut T,
+    context: &Context<'_>,
+) -> bool {
     let before = edited.clone();
     let mut editor = Editor { ui, context, parts: 0, changed: false, refused: false };
     let walked = edited.describe(&mut editor);
@@ -28,7 +32,7 @@ pub(super) fn edit<T: Described + Clone>(ui: &mut Ui, edited: &mut T, context: &
 /// Puts every part under the user's hand.
 struct Editor<'a> {
     ui: &'a mut Ui,
-    context: &'a Context,
+    context: &'a Context<'a>,
     /// Parts so far, which tell lists apart.
     parts: usize,
     changed: bool,
@@ -171,7 +175,7 @@ fn is_same(list: NameList, known: &str, name: &str) -> bool {
 }
 
 /// Shows what is asked of a vertex; true when it was changed.
-pub(super) fn edit_test(ui: &mut Ui, test: &mut VertexTest, context: &Context) -> bool {
+pub(super) fn edit_test(ui: &mut Ui, test: &mut VertexTest, context: &Context<'_>) -> bool {
     match test {
         Tree::Leaf(check) => {
             let changed = edit(ui, check, context);
@@ -191,7 +195,7 @@ pub(super) fn edit_test(ui: &mut Ui, test: &mut VertexTest, context: &Context) -
 }
 
 /// Several tests at one vertex.
-fn edit_joined(ui: &mut Ui, test: &mut VertexTest, context: &Context) -> bool {
+fn edit_joined(ui: &mut Ui, test: &mut VertexTest, context: &Context<'_>) -> bool {
     let mut either = matches!(test, Tree::Or(_));
     let (Tree::And(parts) | Tree::Or(parts)) = test else { return false };
     let mut parts = std::mem::take(parts);
@@ -205,8 +209,8 @@ fn edit_joined(ui: &mut Ui, test: &mut VertexTest, context: &Context) -> bool {
 }
 
 /// A menu that asks for more of the same vertex.
-fn more_at_vertex(ui: &mut Ui, test: &mut VertexTest, context: &Context) -> bool {
-    let proposals = || VertexCheck::proposals(&context.scene, context.spot);
+fn more_at_vertex(ui: &mut Ui, test: &mut VertexTest, context: &Context<'_>) -> bool {
+    let proposals = || VertexCheck::proposals(context.scene, context.spot);
     let menu = ui.menu_button("&", |ui| add::lines(ui, proposals()));
     menu.response.on_hover_text("Ask for more at the same vertex");
     let Some(more) = menu.inner.flatten() else { return false };

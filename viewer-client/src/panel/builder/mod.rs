@@ -6,7 +6,6 @@ mod edit;
 use common::{Filter, FilterScene, FilterText, Spot, VertexTest};
 use egui::{Align, Button, ComboBox, Label, Layout, RichText, Ui, vec2};
 
-use super::filter::filter_scene;
 use crate::command::FilterCommand;
 use crate::world::World;
 
@@ -15,13 +14,13 @@ const MORE_WIDTH: f32 = 36.0;
 
 /// What conditions are about: names, and where a new region lies.
 #[derive(Debug)]
-pub(super) struct Context {
-    scene: FilterScene,
+pub(super) struct Context<'a> {
+    scene: &'a FilterScene,
     spot: Spot,
 }
 
-impl Context {
-    fn of(world: &World<'_>) -> Self {
+impl<'a> Context<'a> {
+    fn of(world: &World<'a>) -> Self {
         let bounds = world.camera.bounds();
         let names = world.names();
         let middle = 0.5 * (bounds.min + bounds.max);
@@ -31,7 +30,7 @@ impl Context {
         let grain = 10.0_f64.powf(radius.log10().floor() - 1.0);
         let neat = |x: f64| if grain > 0.0 { (x / grain).round() / (1.0 / grain) } else { x };
         let centre = names.world(middle.into()).map(neat);
-        Self { scene: filter_scene(world), spot: Spot { centre, radius: neat(radius) } }
+        Self { scene: world.filter_scene, spot: Spot { centre, radius: neat(radius) } }
     }
 }
 
@@ -88,7 +87,7 @@ pub(super) fn ui(ui: &mut Ui, world: &World<'_>, push: &mut impl FnMut(FilterCom
 }
 
 /// A part of the tree, `depth` levels below its root.
-fn node(ui: &mut Ui, filter: &mut Filter, context: &Context, depth: usize) -> Edit {
+fn node(ui: &mut Ui, filter: &mut Filter, context: &Context<'_>, depth: usize) -> Edit {
     match filter {
         Filter::And(_) | Filter::Or(_) => group(ui, filter, false, context, depth),
         Filter::Not(inner) if matches!(**inner, Filter::And(_) | Filter::Or(_)) => {
@@ -129,7 +128,7 @@ impl LineEdit {
 }
 
 /// A condition.
-fn line(ui: &mut Ui, filter: &mut Filter, negative: bool, context: &Context) -> LineEdit {
+fn line(ui: &mut Ui, filter: &mut Filter, negative: bool, context: &Context<'_>) -> LineEdit {
     let mut done = LineEdit { edit: Edit::Nothing, turned: false, more: None };
     let row = vec2(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(row, Layout::left_to_right(Align::Min), |ui| {
@@ -137,7 +136,7 @@ fn line(ui: &mut Ui, filter: &mut Filter, negative: bool, context: &Context) -> 
         let width = (row.x - MORE_WIDTH).max(0.0);
         ui.vertical(|ui| {
             ui.set_width(width);
-            ui.horizontal_wrapped(|ui| parts(ui, (&mut *filter, negative), context, &mut done));
+            ui.horizontal_wrapped(|ui| parts(ui, &mut *filter, negative, context, &mut done));
         });
         done.more = more(ui, filter, context);
     });
@@ -147,8 +146,9 @@ fn line(ui: &mut Ui, filter: &mut Filter, negative: bool, context: &Context) -> 
 /// What can be chosen of a condition.
 fn parts(
     ui: &mut Ui,
-    (filter, negative): (&mut Filter, bool),
-    context: &Context,
+    filter: &mut Filter,
+    negative: bool,
+    context: &Context<'_>,
     done: &mut LineEdit,
 ) {
     if ui.small_button("×").on_hover_text("Take this condition away").clicked() {
@@ -168,7 +168,7 @@ fn parts(
 }
 
 /// What else can be done with a condition: another one beside it, and whether either is enough.
-fn more(ui: &mut Ui, filter: &Filter, context: &Context) -> Option<(Filter, bool)> {
+fn more(ui: &mut Ui, filter: &Filter, context: &Context<'_>) -> Option<(Filter, bool)> {
     let menu = ui.menu_button("…", |ui| {
         let and = ui.menu_button("and …", |ui| add::choices(ui, context)).inner.flatten();
         let or = ui.menu_button("or …", |ui| add::choices(ui, context)).inner.flatten();
@@ -187,7 +187,7 @@ fn group(
     ui: &mut Ui,
     filter: &mut Filter,
     negative: bool,
-    context: &Context,
+    context: &Context<'_>,
     depth: usize,
 ) -> Edit {
     let mut either = matches!(filter, Filter::Or(_));
@@ -259,26 +259,31 @@ fn joined_tests(
     ui: &mut Ui,
     parts: &mut Vec<VertexTest>,
     either: &mut bool,
-    context: &Context,
+    context: &Context<'_>,
 ) -> bool {
     let mut changed = false;
     let mut gone = None;
-    for (index, part) in parts.iter_mut().enumerate() {
-        ui.push_id(index, |ui| {
-            if index > 0 {
-                let word = if *either { "or" } else { "and" };
-                let tip = "At the same vertex; a click changes between and, or";
-                if ui.small_button(word).on_hover_text(tip).clicked() {
-                    *either = !*either;
-                    changed = true;
-                }
+    let mut test = |ui: &mut Ui, index: usize, part: &mut VertexTest| {
+        if index > 0 {
+            let word = if *either { "or" } else { "and" };
+            let tip = "At the same vertex; a click changes between and, or";
+            if ui.small_button(word).on_hover_text(tip).clicked() {
+                *either = !*either;
+                changed = true;
             }
-            changed |= edit::edit_test(ui, part, context);
-            if ui.small_button("×").on_hover_text("Take this test away").clicked() {
-                gone = Some(index);
-            }
-        });
-    }
+        }
+        changed |= edit::edit_test(ui, part, context);
+        if ui.small_button("×").on_hover_text("Take this test away").clicked() {
+            gone = Some(index);
+        }
+    };
+    // Each begins at the left: what wraps in the middle of a line has no room to go on.
+    ui.end_row();
+    ui.vertical(|ui| {
+        for (index, part) in parts.iter_mut().enumerate() {
+            ui.push_id(index, |ui| ui.horizontal_wrapped(|ui| test(ui, index, part)));
+        }
+    });
     if let Some(index) = gone {
         parts.remove(index);
     }

@@ -156,6 +156,20 @@ fn every_part_of_a_condition_can_be_changed_in_its_place() {
 }
 
 #[test]
+fn tests_of_one_vertex_have_lines_of_their_own() {
+    let text = "any (in sphere(0, 1, 0, 0.5) and on material \"lamp\" and not is diffuse)";
+    let mut harness = builder(text);
+    harness.set_size(vec2(268.0, 600.0));
+    harness.run_steps(3);
+    let lists: Vec<_> = harness.get_all_by_role(Role::ComboBox).map(|node| node.rect()).collect();
+    assert_eq!(lists.len(), 8, "place; in, sphere; on, material, lamp; is, diffuse");
+    for list in &lists {
+        assert!(list.height() < 30.0 && list.right() <= 268.0, "a narrow place: {list}");
+    }
+    assert!(lists[3].top() > lists[2].bottom() && lists[6].top() > lists[5].bottom(), "lines");
+}
+
+#[test]
 fn the_menu_of_a_condition_stays_at_the_end_of_its_line() {
     let width = 268.0;
     for filter in ["edges >= 3", "any in sphere(0, 1, 0, 0.5)", "any through box(0, 0, 0, 1, 1, 1)"]

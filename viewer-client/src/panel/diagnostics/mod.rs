@@ -8,12 +8,14 @@ use common::{Diagnostics, Statistics};
 use egui::{Label, RichText, Ui};
 
 use super::image::layer_button;
+use super::lines::Lines;
 use super::widgets::{dot, empty_state, reading};
-use super::{Panel, reveal};
-use crate::command::{Command, FilterCommand, ImageCommand, Layer, PanelName};
+use super::{Panel, Section, reveal};
+use crate::command::{Command, FilterCommand, ImageCommand};
 use crate::settings::region::{self, Region};
 use crate::value::format;
 use crate::value::theme;
+use crate::value::{Layer, PanelName};
 use crate::world::World;
 
 /// Potential scale reduction above which chains do not agree [Gelman and Rubin 1992].
@@ -22,7 +24,7 @@ const DISAGREEMENT: f32 = 1.1;
 const WORTH_A_LOOK: f32 = 0.05;
 
 /// Diagnostics of the chains.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct DiagnosticsPanel;
 
 impl Panel for DiagnosticsPanel {
@@ -57,6 +59,36 @@ impl Panel for DiagnosticsPanel {
         plots::memory(ui, diagnostics);
         caption(ui, "Longest stays");
         stays::show(ui, world, diagnostics, commands);
+    }
+}
+
+impl Section for DiagnosticsPanel {
+    const NAME: PanelName = PanelName::Diagnostics;
+    const TITLE: &'static str = "Chains";
+    const HELP: &'static [&'static str] = &[
+        "Whether the image can be believed, from every step of every chain. R-hat above 1.1 means \
+         that chains disagree; the maps show where.",
+    ];
+
+    fn applies(world: &World<'_>) -> bool {
+        world.has_chains()
+    }
+
+    fn text(world: &World<'_>) -> String {
+        let mut lines = Lines::default();
+        let Some(diagnostics) = world.diagnostics() else { return lines.text() };
+        lines.put(format_args!("R-hat\t{:.5}", diagnostics.r_hat));
+        let worst = diagnostics.maps.r_hat.iter().copied().fold(0.0_f32, f32::max);
+        lines.put(format_args!("R-hat of the worst tile\t{worst:.4}"));
+        lines.put(format_args!("effective samples\t{:.0}", diagnostics.effective_samples));
+        lines.put(format_args!("steps for one\t{:.1}", diagnostics.correlation_steps));
+        for (power, correlation) in diagnostics.autocorrelation.iter().enumerate() {
+            lines.put(format_args!(
+                "correlation of stretches of\t{}\t{correlation:.4}",
+                1_u64 << power.min(63)
+            ));
+        }
+        lines.text()
     }
 }
 

@@ -5,9 +5,9 @@ use egui::{
     WidgetInfo, pos2, vec2,
 };
 
-use crate::command::Layer;
 use crate::imaging::{self, Sources};
 use crate::settings::ImageSettings;
+use crate::value::Layer;
 use crate::value::format;
 use crate::value::theme;
 use crate::world::World;

@@ -5,21 +5,21 @@ mod moment;
 mod timeline;
 
 use common::{
-    ExplorerCommand, ExplorerState, LeaseRequest, MAX_RATE, Order, Pace, Role, Seed, SkipTo,
-    StrategyId,
+    ExplorerCommand, ExplorerState, LeaseRequest, Order, Pace, Role, Seed, SkipTo, StrategyId,
 };
 use egui::{Button, Color32, ComboBox, DragValue, RichText, TextStyle, Ui};
 
-use super::Panel;
 use super::hover::{self, Pointed};
-use super::widgets::{Scale, dot, empty_state, row, slider, toggle};
-use crate::command::{Command, LayoutCommand};
+use super::lines::Lines;
+use super::widgets::{dot, empty_state, number, row, setting};
+use super::{Panel, Section};
+use crate::command::{Command, form};
+use crate::keys::Group;
+use crate::settings::WindowSettings;
+use crate::value::PanelName;
 use crate::value::format;
 use crate::value::theme;
 use crate::world::World;
-
-/// Slowest play that the slider offers; scripts can ask for less.
-const SLOWEST: f32 = 0.1;
 
 /// Points that a strategy's dot and the frame of its name take.
 const AROUND_NAME: f32 = 36.0;
@@ -59,7 +59,7 @@ impl Panel for ExplorerPanel {
             return;
         }
         ui.add_enabled_ui(drives, |ui| {
-            self.transport(ui, state, &mut order);
+            self.transport(ui, world, &mut order);
             self.targeted(ui, world, &mut order);
             allowed(ui, world, state, &mut order);
         });
@@ -69,6 +69,37 @@ impl Panel for ExplorerPanel {
             moment::show(ui, world, shown, commands);
         }
         self.film.show(ui, world);
+    }
+}
+
+impl Section for ExplorerPanel {
+    const NAME: PanelName = PanelName::Explorer;
+    const TITLE: &'static str = "Explorer";
+    const HELP: &'static [&'static str] = &[
+        "A chain of your own, which never touches the image: seed it with a path and step it to \
+         see what each mutation does.",
+        "Only the driver may; the others watch.",
+    ];
+    const KEYS: &'static [Group] = &[Group::Explorer];
+
+    fn applies(world: &World<'_>) -> bool {
+        world.has_chains()
+    }
+
+    fn text(world: &World<'_>) -> String {
+        let state = &world.status.steering.explorer;
+        let mut lines = Lines::default();
+        if let Some(path) = state.current {
+            lines.put(format_args!("path\t{path}"));
+        }
+        lines.put(format_args!("steps\t{}\taccepted\t{}", state.steps, state.accepted));
+        if let Some(moment) = world.moment {
+            let step = &moment.step;
+            let strategy = world.strategy_name(usize::from(step.strategy.0));
+            lines.put(format_args!("step\t{}\t{strategy}\t{:?}", step.number, step.outcome));
+            lines.put(format_args!("acceptance\t{:.6}", step.acceptance));
+        }
+        lines.text()
     }
 }
 
@@ -96,12 +127,7 @@ fn lease(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     let others: Vec<&str> = world.others().map(|viewer| viewer.author.name.as_str()).collect();
     if !others.is_empty() {
         ui.label(RichText::new(format!("Also here: {}", others.join(", "))).weak());
-        let tip = "The others see your eye in the scene, and your filter";
-        if let Some(switch) =
-            toggle(ui, "Show others where I look", tip, world.settings.layout.seen)
-        {
-            commands.push(Command::Layout(LayoutCommand::Seen(switch)));
-        }
+        setting(ui, world, &WindowSettings::seen(), commands);
     }
     if let Some(Ok(remark) | Err(remark)) = &steering.remark {
         let text = RichText::new(format::sentence(remark)).small().weak();
@@ -129,9 +155,10 @@ impl ExplorerPanel {
     fn transport(
         &mut self,
         ui: &mut Ui,
-        state: &ExplorerState,
+        world: &World<'_>,
         order: &mut impl FnMut(ExplorerCommand),
     ) {
+        let state = &world.status.steering.explorer;
         ui.horizontal(|ui| {
             if state.pace == Pace::Paused {
                 if ui.button("Play").on_hover_text("Step by itself (K)").clicked() {
@@ -151,9 +178,9 @@ impl ExplorerPanel {
         if state.pace == Pace::Playing {
             self.rate = None;
         }
-        let tip = "Steps a second while it plays";
-        let scale = Scale::logarithmic(SLOWEST..=MAX_RATE, 1).suffix(" /s");
-        if let Some(rate) = slider(ui, "Pace", tip, self.rate.unwrap_or(state.rate), scale) {
+        let rate = f64::from(self.rate.unwrap_or(state.rate));
+        if let Some(rate) = number(ui, world, "Pace", form("explorer play"), rate) {
+            let rate = rate as f32;
             self.rate = Some(rate);
             if state.pace == Pace::Playing {
                 order(ExplorerCommand::Play(rate));
@@ -190,8 +217,8 @@ impl ExplorerPanel {
             if ui.button("Fan").on_hover_text(tip).clicked() {
                 order(ExplorerCommand::Fan { strategy, count: self.fan });
             }
-            ui.add(DragValue::new(&mut self.fan).range(1..=200))
-                .on_hover_text("Proposals of a fan");
+            let counts = form("explorer fan").range().map_or(1.0..=1.0, |r| r.low..=r.high);
+            ui.add(DragValue::new(&mut self.fan).range(counts)).on_hover_text("Proposals of a fan");
         });
     }
 }

@@ -21,11 +21,11 @@ fn driven() -> Stage {
     let author = Author { session, name: "me".to_owned() };
     let me = Attendee { author, role: Role::Driver, ..Attendee::default() };
     let steering = &mut stage.status.steering;
-    steering.take(Notice::Presence(Presence { viewers: vec![me] }));
+    steering.accept(Notice::Presence(Presence { viewers: vec![me] }));
     steering.explorer.current = Some(PathId::default());
     steering.explorer.rate = 2.0;
     let vertices = (0..4).map(vertex).collect();
-    steering.focus.take_path(FocusPath { vertices, next: 1, ..FocusPath::default() });
+    steering.focus.set_path(FocusPath { vertices, next: 1, ..FocusPath::default() });
     stage
 }
 
@@ -83,14 +83,14 @@ fn observers_watch_and_may_ask() {
 fn a_failed_step_says_why() {
     let mut stage = driven();
     let focus = &mut stage.status.steering.focus;
-    focus.take_step(step(1, FocusOutcome::Rejected, 4));
-    focus.take_step(step(2, FocusOutcome::Failed(0), 4));
+    focus.add_step(step(1, FocusOutcome::Rejected, 4));
+    focus.add_step(step(2, FocusOutcome::Failed(0), 4));
     let mut harness = stage.harness();
     harness.run();
     assert!(shows(&harness, "Failed: occluded"), "why it failed");
     click(&mut harness, "Back");
     assert!(harness.state().said.contains(&Command::Scrub(Some(1))), "back by one");
-    harness.state_mut().scrub = Some(1);
+    harness.state_mut().status.steering.focus.scrub = Some(1);
     harness.run();
     assert!(shows(&harness, "Rejected"), "the step before");
     click(&mut harness, "Live");
@@ -109,7 +109,7 @@ fn an_acceptance_is_taken_apart() {
         target_proposed: 0.25,
     };
     let told = FocusStep { factors, acceptance: 0.1875, ..step(1, FocusOutcome::Rejected, 4) };
-    stage.status.steering.focus.take_step(told);
+    stage.status.steering.focus.add_step(told);
     let mut harness = stage.harness();
     harness.run();
     for text in ["a = 0.1875", "4.0000e0", "1.0000e0", "0.2500", "1.500", "0.5000", "0.1875"] {
@@ -123,7 +123,7 @@ fn an_acceptance_is_taken_apart() {
         acceptance: 0.0,
         ..step(2, FocusOutcome::Rejected, 4)
     };
-    harness.state_mut().status.steering.focus.take_step(one_way);
+    harness.state_mut().status.steering.focus.add_step(one_way);
     harness.run();
     assert!(shows(&harness, "0: no way back"), "in words");
 }
@@ -132,8 +132,8 @@ fn an_acceptance_is_taken_apart() {
 fn a_step_under_the_cursor_is_shown_without_a_click() {
     let mut stage = driven();
     let focus = &mut stage.status.steering.focus;
-    focus.take_step(step(1, FocusOutcome::Failed(1), 4));
-    focus.take_step(step(2, FocusOutcome::Rejected, 4));
+    focus.add_step(step(1, FocusOutcome::Failed(1), 4));
+    focus.add_step(step(2, FocusOutcome::Rejected, 4));
     let mut harness = stage.harness();
     harness.run();
     let strip = harness.get_by_label("Last steps").rect();

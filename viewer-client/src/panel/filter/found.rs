@@ -5,9 +5,10 @@ use common::{
 };
 use egui::{FontFamily, Label, RichText, Ui};
 
-use crate::command::{Command, FilterCommand, Switch};
+use crate::command::{Command, FilterCommand};
 use crate::panel::widgets::row;
 use crate::settings::{FilterSettings, FilterSource};
+use crate::value::Switch;
 use crate::value::format;
 use crate::value::theme;
 use crate::world::World;
@@ -30,7 +31,7 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) 
         _ => reply.map(|reply| reply.conditions.as_slice()).unwrap_or_default(),
     };
     if counts.matched == 0 && counts.seen > 0 && !conditions.is_empty() {
-        nothing_found(ui, world, (counts, conditions), commands);
+        nothing_found(ui, world, counts, conditions, commands);
     }
 }
 
@@ -61,14 +62,15 @@ pub(crate) fn energy(counts: &FilterCounts) -> String {
 fn nothing_found(
     ui: &mut Ui,
     world: &World<'_>,
-    (counts, conditions): (&FilterCounts, &[String]),
+    counts: &FilterCounts,
+    conditions: &[String],
     commands: &mut Vec<Command>,
 ) {
     ui.add_space(4.0);
     let busy = theme::busy(ui.visuals().dark_mode);
     ui.label(RichText::new("No path matches").strong().color(busy));
     if let Some(miss) = &counts.nearest {
-        nearest(ui, world, (miss, conditions), commands);
+        nearest(ui, world, miss, conditions, commands);
     }
     ui.horizontal_wrapped(|ui| {
         if !world.settings.filter.is_inverted()
@@ -94,7 +96,8 @@ fn nothing_found(
 fn nearest(
     ui: &mut Ui,
     world: &World<'_>,
-    (miss, conditions): (&NearestMiss, &[String]),
+    miss: &NearestMiss,
+    conditions: &[String],
     commands: &mut Vec<Command>,
 ) {
     ui.add(Label::new(explained(miss, conditions, &world.settings.filter)).wrap());
@@ -178,7 +181,7 @@ fn remedies(settings: &FilterSettings, failed: &Shortfall) -> Vec<Remedy> {
         }
         Some(FilterSource::Kept(number)) => {
             let Some(kept) = settings.kept().get(number) else { return Vec::new() };
-            let off = FilterCommand::Use(kept.name.clone(), Switch::Off);
+            let off = FilterCommand::Use(Switch::Off, kept.name.clone());
             vec![(format!("Switch off {}", kept.name), "A kept filter asks for this", off)]
         }
         None => Vec::new(),

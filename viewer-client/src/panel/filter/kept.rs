@@ -2,9 +2,9 @@
 
 use egui::{Align, Button, Label, Layout, RichText, TextEdit, Ui};
 
-use crate::command::{FilterCommand, MOST_KEPT, Switch, kept_name};
+use crate::command::{FilterCommand, MOST_KEPT};
 use crate::settings::KeptFilter;
-use crate::value::theme;
+use crate::value::{Switch, name, theme};
 use crate::world::World;
 
 /// Keeps filters.
@@ -41,7 +41,7 @@ impl Kept {
                 egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Name of the filter")
             });
             let entered = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-            let name = kept_name(&self.name);
+            let name = name(&self.name);
             let is_new = |name: &String| settings.kept().iter().all(|kept| kept.name != *name);
             let full = settings.kept().len() >= MOST_KEPT && name.as_ref().is_some_and(is_new);
             let keep = ui.add_enabled(name.is_some() && !full, Button::new("Keep"));
@@ -67,11 +67,11 @@ fn line(ui: &mut Ui, kept: &KeptFilter, filter: &mut impl FnMut(FilterCommand)) 
         let mut on = kept.on;
         let tip = format!("Holds beside what is above\n{}", kept.text());
         if ui.checkbox(&mut on, "").on_hover_text(tip).changed() {
-            filter(FilterCommand::Use(name(), Switch::to(on)));
+            filter(FilterCommand::Use(Switch::to(on), name()));
         }
         let not = Button::selectable(kept.inverted, "not").small();
         if ui.add(not).on_hover_text("Want the opposite").clicked() {
-            filter(FilterCommand::Reverse(name(), Switch::Toggle));
+            filter(FilterCommand::Reverse(Switch::Toggle, name()));
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let forget = ui.small_button("×").on_hover_text(format!("Forget {}", kept.name));

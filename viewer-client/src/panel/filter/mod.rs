@@ -7,13 +7,15 @@ mod text;
 use common::{Filter, FilterText, Leaf, SelectorKind};
 use egui::{Button, DragValue, Label, RichText, Ui};
 
+use super::lines::Lines;
 use super::widgets::{dot, toggle};
-use super::{Panel, builder};
-use crate::command::{Command, FilterCommand, kind_name};
+use super::{Panel, Section, builder};
+use crate::command::{Command, FilterCommand};
+use crate::keys;
+use crate::value::PanelName;
+use crate::value::kind_name;
 use crate::value::theme;
 use crate::world::World;
-
-pub(super) use text::filter_scene;
 
 /// Light path expressions that people ask for most.
 const PRESETS: [(&str, &str, &str); 5] = [
@@ -45,6 +47,34 @@ impl Panel for FilterPanel {
         self.kept.ui(ui, world, &mut filter);
         switches(ui, world, &mut filter);
         found::show(ui, world, commands);
+    }
+}
+
+impl Section for FilterPanel {
+    const NAME: PanelName = PanelName::Filter;
+    const TITLE: &'static str = "Filter";
+    const HELP: &'static [&'static str] = &[
+        "Only the paths that the filter wants are sent. Take a preset, write the text, put \
+         conditions together below it, or make spheres in the view: all of it is one filter.",
+        "What holds can be kept under a name. Matched and seen are exact; the energy is the share \
+         of the image's light that matching paths carry.",
+    ];
+
+    fn text(world: &World<'_>) -> String {
+        let mut lines = Lines::default();
+        lines.put(format_args!("{}", world.settings.filter.whole()));
+        let Some(counts) = world.filter_counts() else { return lines.text() };
+        lines.put(format_args!("{}", found::text(world, counts)));
+        lines.put(format_args!("energy\t{}", found::energy(counts)));
+        let reply = world.status.filter.as_ref();
+        let conditions = match (world.playback, world.store.filter()) {
+            (Some(_), Some(filter)) => filter.condition_texts(),
+            _ => reply.map(|reply| reply.conditions.as_slice()).unwrap_or_default(),
+        };
+        for (condition, count) in conditions.iter().zip(&counts.conditions) {
+            lines.put(format_args!("{count}\t{condition}"));
+        }
+        lines.text()
     }
 }
 
@@ -91,7 +121,7 @@ fn selectors(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterComma
     let settings = &world.settings.filter;
     if settings.selectors().is_empty() {
         let [start, end, any, all] =
-            world.settings.layout.keys.selectors().map(|(key, _)| key.name());
+            keys::selectors(world.settings.window.keys).map(|(key, _)| key.name());
         let text = format!(
             "Point at a surface and press {start} for a sphere in which paths start, {end} for one \
              in which they end, {any} for any and {all} for all through which they pass.",

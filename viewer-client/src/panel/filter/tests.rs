@@ -9,10 +9,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::*;
-use crate::command::{Sphere, Switch};
 use crate::panel::tests::{Stage, shows};
 use crate::source::model::Model;
 use crate::synthetic::{mesh, welcome};
+use crate::value::{Sphere, Switch};
 
 fn set(text: &str) -> FilterCommand {
     FilterCommand::Set(FilterText::read(text))
@@ -104,10 +104,10 @@ fn what_is_wanted_follows_every_switch() {
     filter.apply(&FilterCommand::Keep("longer".to_owned()));
     filter.apply(&FilterCommand::Clear);
     assert_eq!(filter.whole().text(), "", "what is kept does not hold by itself");
-    filter.apply(&FilterCommand::Use("longer".to_owned(), Switch::On));
+    filter.apply(&FilterCommand::Use(Switch::On, "longer".to_owned()));
     assert_eq!(filter.whole().text(), "not edges == 2", "now it does");
     filter.apply(&set("dwell > 3"));
-    filter.apply(&FilterCommand::Reverse("longer".to_owned(), Switch::Toggle));
+    filter.apply(&FilterCommand::Reverse(Switch::Toggle, "longer".to_owned()));
     assert_eq!(filter.whole().text(), "dwell > 3 and edges == 2", "beside the text, turned round");
     filter.apply(&FilterCommand::Enable(Switch::Off));
     assert_eq!(filter.whole().text(), "", "switched off");
@@ -185,9 +185,9 @@ fn filters_are_kept_used_turned_written_and_forgotten() {
     assert!(shows(&harness, "long ones"), "it is listed");
     let switch = harness.get_all_by_role(egui::accesskit::Role::CheckBox).next();
     switch.expect("its switch").click();
-    assert_eq!(obey(&mut harness), command(FilterCommand::Use(name(), Switch::On)));
+    assert_eq!(obey(&mut harness), command(FilterCommand::Use(Switch::On, name())));
     harness.get_all_by_label("not").last().expect("its not").click();
-    assert_eq!(obey(&mut harness), command(FilterCommand::Reverse(name(), Switch::Toggle)));
+    assert_eq!(obey(&mut harness), command(FilterCommand::Reverse(Switch::Toggle, name())));
     assert_eq!(click(&mut harness, "Edit"), command(FilterCommand::Load(name())));
     assert_eq!(harness.state().settings.filter.whole().text(), "not edges >= 4", "turned round");
     harness.get_all_by_label("×").last().expect("its cross").click();

@@ -3,13 +3,12 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use common::{Completion, FilterError, FilterScene, FilterText, SceneFrame, SceneMesh, complete};
+use common::{Completion, FilterError, FilterText, complete};
 use egui::text::{CCursor, CCursorRange, LayoutJob, TextFormat};
 use egui::{
     Button, EventFilter, FontId, Galley, Id, Key, Modifiers, Popup, PopupCloseBehavior, RectAlign,
     RichText, Stroke, TextBuffer, TextEdit, Ui,
 };
-use glam::DVec3;
 
 use crate::command::FilterCommand;
 use crate::value::theme;
@@ -54,7 +53,7 @@ impl Draft {
         if let Some(completion) = &completion {
             self.choose(ui, id, completion);
         }
-        self.follow();
+        self.read_anew();
         let read = self.read.clone();
         let mut layouter = |ui: &Ui, text: &dyn TextBuffer, width: f32| {
             // While it is edited, it is ahead of what was read.
@@ -81,7 +80,7 @@ impl Draft {
         }
         let (enter, escape) = ui.input(|i| (i.key_pressed(Key::Enter), i.key_pressed(Key::Escape)));
         let over_offers = self.show_offers(ui, &response, completion);
-        self.follow();
+        self.read_anew();
         if response.has_focus() && escape {
             self.text = current.to_string();
             response.surrender_focus();
@@ -102,7 +101,7 @@ impl Draft {
     }
 
     /// Reads what was written since.
-    fn follow(&mut self) {
+    fn read_anew(&mut self) {
         if self.read.text() != self.text {
             self.read = FilterText::read(self.text.as_str());
             self.offered = None;
@@ -122,7 +121,7 @@ impl Draft {
         let byte = byte_of(&self.text, cursor.primary.index.0);
         let offered = self.offered.take().filter(|(at, _)| *at == byte);
         let offered =
-            offered.unwrap_or_else(|| (byte, complete(&self.text, byte, &filter_scene(world))));
+            offered.unwrap_or_else(|| (byte, complete(&self.text, byte, world.filter_scene)));
         let (_, found) = self.offered.insert(offered);
         (!found.choices.is_empty()).then(|| found.clone())
     }
@@ -132,7 +131,7 @@ impl Draft {
         let last = completion.choices.len().min(MOST) - 1;
         self.line = self.line.min(last);
         match key_for_choices(ui) {
-            Some(Key::Tab) => self.take(ui, id, completion, self.line),
+            Some(Key::Tab) => self.insert(ui, id, completion, self.line),
             Some(Key::ArrowDown) => self.line = (self.line + 1).min(last),
             Some(Key::ArrowUp) => self.line = self.line.saturating_sub(1),
             Some(_) => self.dismissed = true,
@@ -141,7 +140,7 @@ impl Draft {
     }
 
     /// Writes a choice into the text, and puts the cursor behind it.
-    fn take(&mut self, ui: &Ui, id: Id, completion: &Completion, line: usize) {
+    fn insert(&mut self, ui: &Ui, id: Id, completion: &Completion, line: usize) {
         let Some((text, cursor)) = completion.taken(&self.text, line) else { return };
         let cursor = text[..cursor].chars().count();
         self.text = text;
@@ -186,7 +185,7 @@ impl Draft {
             });
         let pressed = ui.input(|input| input.pointer.any_pressed());
         if let Some(number) = clicked.filter(|_| pressed) {
-            self.take(ui, response.id, &completion, number);
+            self.insert(ui, response.id, &completion, number);
         }
         shown.is_some_and(|shown| shown.response.contains_pointer())
     }
@@ -246,12 +245,4 @@ fn underlined(ui: &Ui, text: &str, fault: Option<&Range<usize>>, width: f32) -> 
 /// The byte of a text at which its character of this number begins.
 fn byte_of(text: &str, character: usize) -> usize {
     text.char_indices().nth(character).map_or(text.len(), |(byte, _)| byte)
-}
-
-/// What filters may ask for of the scene, as far as it has come.
-pub(in crate::panel) fn filter_scene(world: &World<'_>) -> FilterScene {
-    let names = world.names();
-    let frame = names.frame.unwrap_or(SceneFrame { centre: DVec3::ZERO, scale: 1.0, light: 1.0 });
-    let none = SceneMesh::default();
-    FilterScene::new(frame, names.mesh.unwrap_or(&none), names.strategies.to_vec())
 }

@@ -2,8 +2,9 @@
 
 use egui::{Align2, CollapsingHeader, Grid, RichText, TextEdit, Ui};
 
-use crate::command::{Command, ImageCommand, Layer};
+use crate::command::{Command, ImageCommand};
 use crate::imaging::{Comparison, TEV_ADDRESS};
+use crate::value::Layer;
 use crate::value::format;
 use crate::world::World;
 

@@ -132,7 +132,7 @@ impl FrameState {
         painter.image(texture, place, whole, Color32::WHITE);
         let hovered = response.hover_pos().and_then(|p| placement.pixel(p));
         let is_ours = self.takes_wheel(ui, &response);
-        wheel(ui, &response, (placement, is_ours), commands);
+        wheel(ui, &response, placement, is_ours, commands);
         pan(&response, placement, commands);
         self.choose(&response, placement, world, commands);
         let chosen = match (self.corner, response.interact_pointer_pos()) {
@@ -205,7 +205,8 @@ impl FrameState {
 fn wheel(
     ui: &Ui,
     response: &Response,
-    (placement, is_ours): (Placement, bool),
+    placement: Placement,
+    is_ours: bool,
     commands: &mut Vec<Command>,
 ) {
     let Some(place) = response.hover_pos() else { return };

@@ -8,13 +8,17 @@ mod readout;
 
 use egui::{Button, ColorImage, RichText, TextureHandle, TextureOptions, Ui};
 
-use super::Panel;
-use super::widgets::{Scale, capitalised, empty_state, slider};
-use crate::command::{Channel, Command, FilterCommand, ImageCommand, Layer, ToneCurve};
+use super::lines::Lines;
+use super::widgets::{empty_state, setting};
+use super::{Panel, Section};
+use crate::command::{Command, FilterCommand, ImageCommand};
+use crate::imaging::Comparison;
 use crate::imaging::{self, Sources};
 use crate::settings::ImageSettings;
 use crate::settings::region;
+use crate::value::PanelName;
 use crate::value::format;
+use crate::value::{Channel, Choice as _, Layer, ToneCurve};
 use crate::world::World;
 
 /// The image as a texture, and what the user is about to do with it.
@@ -71,7 +75,7 @@ impl Panel for ImagePanel {
             legend::show(ui, &legend);
         }
         channels(ui, world, commands);
-        exposure(ui, world, commands);
+        setting(ui, world, &ImageSettings::exposure(), commands);
         tone(ui, world, commands);
         zoom(ui, world, commands);
         let text = format!(
@@ -80,6 +84,41 @@ impl Panel for ImagePanel {
         );
         ui.label(RichText::new(text).small().weak());
         self.files.show(ui, world, commands);
+    }
+}
+
+impl Section for ImagePanel {
+    const NAME: PanelName = PanelName::Image;
+    const TITLE: &'static str = "Image";
+    const HELP: &'static [&'static str] = &[
+        "The image that the chains have made so far. The wheel comes closer, the right button \
+         shifts.",
+        "Click a pixel, or drag a rectangle: then only paths to there are sent. Ctrl+C copies the \
+         raw values of the pixel under the cursor.",
+    ];
+
+    fn applies(world: &World<'_>) -> bool {
+        world.has_chains()
+    }
+
+    fn text(world: &World<'_>) -> String {
+        let mut lines = Lines::default();
+        let [width, height] = world.film.size();
+        lines.put(format_args!("pixels\t{width} × {height}"));
+        let effort = world.film.steps() as f64 / (width * height).max(1) as f64;
+        lines.put(format_args!("mutations a pixel\t{effort:.1}"));
+        lines.put(format_args!("exposure\t{} EV", world.settings.image.exposure.stops()));
+        let Some(reference) = world.reference else { return lines.text() };
+        lines.put(format_args!("reference\t{}", reference.name));
+        if let Some(comparison) = Comparison::of(world.film, reference) {
+            lines.put(format_args!("relMSE\t{:.6e}", comparison.relative_mse));
+            lines.put(format_args!("relMSE, best 99 %\t{:.6e}", comparison.trimmed));
+            lines.put(format_args!("energy\t{:.3} %", 100.0 * comparison.mean_ratio));
+        }
+        if let Some(flip) = world.flip {
+            lines.put(format_args!("FLIP\t{:.5}", flip.mean));
+        }
+        lines.text()
     }
 }
 
@@ -177,36 +216,13 @@ pub(super) fn layer_button(
         "Load a reference first: see Compare below"
     };
     let chosen = world.settings.image.layer == layer;
-    let label = match layer {
-        Layer::Disagreement => "R-hat".to_owned(),
-        Layer::Flip => "FLIP".to_owned(),
-        other => capitalised(&other.to_string()),
-    };
-    let button = Button::selectable(chosen, label);
+    let button = Button::selectable(chosen, layer.label());
     let button = ui
         .add_enabled(!missing, button)
-        .on_hover_text(meaning(layer))
+        .on_hover_text(layer.meaning())
         .on_disabled_hover_text(remedy);
     if button.clicked() {
         commands.push(Command::Image(ImageCommand::Show(layer)));
-    }
-}
-
-/// What a layer shows.
-fn meaning(layer: Layer) -> &'static str {
-    match layer {
-        Layer::Image => "The progressive image",
-        Layer::Reference => "The image to compare with",
-        Layer::Difference => "Orange is brighter than the reference, blue darker",
-        Layer::Error => "Where the image is still wrong, relative to the reference",
-        Layer::Flip => {
-            "FLIP: how different a person sees image and reference who flips between them"
-        }
-        Layer::Acceptance => "Mean acceptance probability of proposals made from paths to here",
-        Layer::Dwell => "How long chains stay at a path to here, in steps",
-        Layer::Visits => "How often chains come here",
-        Layer::Spread => "Relative standard error of the light here, from how chains differ",
-        Layer::Disagreement => "R-hat: whether chains agree how much light comes here",
     }
 }
 
@@ -218,28 +234,13 @@ fn channels(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     }
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        for (channel, label, tip) in [
-            (Channel::Rgb, "RGB", "All of the light"),
-            (Channel::Red, "R", "Red alone, as grey"),
-            (Channel::Green, "G", "Green alone, as grey"),
-            (Channel::Blue, "B", "Blue alone, as grey"),
-            (Channel::Luminance, "Y", "Luminance, as grey"),
-        ] {
-            let button = ui.selectable_label(look.channel == channel, label).on_hover_text(tip);
-            if button.clicked() {
+        for channel in Channel::ALL {
+            let button = ui.selectable_label(look.channel == channel, channel.label());
+            if button.on_hover_text(channel.meaning()).clicked() {
                 commands.push(Command::Image(ImageCommand::Channel(channel)));
             }
         }
     });
-}
-
-fn exposure(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
-    let tip = "Brightness of the image on screen; each stop doubles it ( , and . )";
-    let scale = Scale::linear(-10.0..=10.0, 1).suffix(" EV");
-    let stops = world.settings.image.exposure;
-    if let Some(stops) = slider(ui, "Exposure", tip, stops, scale) {
-        commands.push(Command::Image(ImageCommand::Exposure(stops)));
-    }
 }
 
 fn tone(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
@@ -248,22 +249,15 @@ fn tone(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
         return;
     }
     ui.horizontal(|ui| {
-        for (curve, label, tip) in [
-            (ToneCurve::Srgb, "sRGB", "As screens expect light"),
-            (ToneCurve::Gamma, "Gamma", "A power of the light"),
-            (ToneCurve::False, "False colour", "Luminance as a colour, over four decades"),
-        ] {
-            let button = ui.selectable_label(look.tone == curve, label).on_hover_text(tip);
-            if button.clicked() {
+        for curve in ToneCurve::ALL {
+            let button = ui.selectable_label(look.tone == curve, curve.label());
+            if button.on_hover_text(curve.meaning()).clicked() {
                 commands.push(Command::Image(ImageCommand::Tone(curve)));
             }
         }
     });
     if look.tone == ToneCurve::Gamma {
-        let scale = Scale::linear(0.5..=4.0, 2);
-        if let Some(gamma) = slider(ui, "Gamma", "Larger is flatter", look.gamma, scale) {
-            commands.push(Command::Image(ImageCommand::Gamma(gamma)));
-        }
+        setting(ui, world, &ImageSettings::gamma(), commands);
     }
 }
 
@@ -284,7 +278,7 @@ fn zoom(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
             }
         }
         let auto = ui
-            .selectable_label(!world.settings.image.chosen, "Auto exposure")
+            .selectable_label(!world.settings.image.exposure.is_chosen(), "Auto exposure")
             .on_hover_text("Brightness that suits the scene");
         if auto.clicked() {
             commands.push(Command::Image(ImageCommand::Auto));

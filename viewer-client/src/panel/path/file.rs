@@ -1,10 +1,6 @@
 //! What a file of paths tells of one of them, and what it does not.
 
-use egui::{Grid, Ui};
-
-use super::light::color;
-use super::vertices::{Described, Line, numbers, title};
-use crate::command::Command;
+use super::table::{Column, Line, Table, color};
 use crate::source::dump::{Act, Outcome, Walked};
 use crate::source::selection::Selection;
 use crate::source::units::Measure;
@@ -43,23 +39,7 @@ pub(super) fn stay(record: Option<&Act>) -> String {
 }
 
 /// A row a vertex.
-pub(super) fn table(ui: &mut Ui, path: Described<'_>, record: &Act, commands: &mut Vec<Command>) {
-    let columns = columns(record);
-    Grid::new("of the file").num_columns(5).striped(true).spacing([9.0, 3.0]).show(ui, |ui| {
-        title(ui, "", "");
-        let measure = "per square unit of the scene file at the vertex itself, as Mitsuba has it; a \
-                       probability behind a mirror or glass, and at the lens";
-        title(ui, "p light", &format!("Density of making the vertex from the light side, {measure}"));
-        title(ui, "p eye", &format!("Density of making the vertex from the eye side, {measure}"));
-        let weight = "in luminance: value over density of the step that makes the vertex";
-        title(ui, "f/p light", &format!("Weight from the light side, {weight}"));
-        title(ui, "f/p eye", &format!("Weight from the eye side, {weight}"));
-        ui.end_row();
-        numbers(ui, path, &columns, commands);
-    });
-}
-
-fn columns(record: &Act) -> [Vec<String>; 4] {
+pub(super) fn table(record: &Act) -> Table {
     let density = |walked: Option<Walked>| {
         walked.map_or_else(|| UNKNOWN.to_owned(), |walked| format::exact(walked.pdf))
     };
@@ -67,12 +47,28 @@ fn columns(record: &Act) -> [Vec<String>; 4] {
         walked.map_or_else(|| UNKNOWN.to_owned(), |w| format::exact(w.weight.luminance()))
     };
     let numbers = || record.numbers.iter();
-    [
-        numbers().map(|n| density(n.from_light)).collect(),
-        numbers().map(|n| density(n.from_eye)).collect(),
-        numbers().map(|n| weight(n.from_light)).collect(),
-        numbers().map(|n| weight(n.from_eye)).collect(),
-    ]
+    let of_density = |side: &str| {
+        format!(
+            "Density of making the vertex from the {side} side, per square unit of the scene file at \
+             the vertex itself, as Mitsuba has it; a probability behind a mirror or glass, and at the \
+             lens"
+        )
+    };
+    let of_weight = |side: &str| {
+        format!(
+            "Weight from the {side} side, in luminance: value over density of the step that makes \
+             the vertex"
+        )
+    };
+    Table {
+        name: "of the file",
+        columns: vec![
+            Column::new("p light", of_density("light"), numbers().map(|n| density(n.from_light))),
+            Column::new("p eye", of_density("eye"), numbers().map(|n| density(n.from_eye))),
+            Column::new("f/p light", of_weight("light"), numbers().map(|n| weight(n.from_light))),
+            Column::new("f/p eye", of_weight("eye"), numbers().map(|n| weight(n.from_eye))),
+        ],
+    }
 }
 
 /// All of one vertex.

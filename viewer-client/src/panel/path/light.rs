@@ -1,62 +1,53 @@
 //! What the daemon tells of the vertices of a path: throughputs, densities, geometry terms.
 
 use common::{PathDetail, Rgb};
-use egui::{Grid, Ui};
 
-use super::vertices::{Described, Line, numbers, title};
-use crate::command::Command;
+use super::table::{Column, Described, Line, Table, color};
 use crate::source::units::{Measure, Start};
 use crate::value::format;
 
-/// A row a vertex.
-pub(super) fn table(
-    ui: &mut Ui,
-    path: Described<'_>,
-    detail: &PathDetail,
-    commands: &mut Vec<Command>,
-) {
-    Grid::new("light").num_columns(6).striped(true).spacing([9.0, 3.0]).show(ui, |ui| {
-        title(ui, "", "");
-        let tip = "Luminance that a walk from the light carries when it has come here. At x0 that is \
-                   the area of the lamp over the probability of its choice, in square units of the \
-                   scene file (one over the density of the start, for lights without a surface), \
-                   from x1 on it is flux: radiance times square unit times sr";
-        title(ui, "β light", tip);
-        let tip = "Luminance that a walk from the eye carries when it has come here: reflectances \
-                   and the like, without a unit; the whole film counts as one";
-        title(ui, "β eye", tip);
-        let tip = "Density of making the vertex from the light side: of x0 per square unit of the \
-                   scene file, of the others per sr (solid angle at the vertex before), and a \
-                   probability behind a mirror or glass. On a point or the sun x0 has a \
-                   probability, in the sky a density per sr; x1 has one per square unit of a disk \
-                   behind sun and sky";
-        title(ui, "p light", tip);
-        let tip = "Density of making the vertex from the eye side, per sr (solid angle at the \
-                   vertex after); a probability behind a mirror or glass; per film for the last \
-                   two";
-        title(ui, "p eye", tip);
-        let tip = "Geometry term of the edge to the next vertex, cos cos / r², per square unit of \
-                   the scene file; at the lens with film area per solid angle in the place of its \
-                   cosine";
-        title(ui, "G", tip);
-        ui.end_row();
-        numbers(ui, path, &columns(detail), commands);
-    });
-}
+/// What the column `β light` holds.
+const BETA_LIGHT: &str = "Luminance that a walk from the light carries when it has come here. At x0 that is \
+    the area of the lamp over the probability of its choice, in square units of the \
+    scene file (one over the density of the start, for lights without a surface), \
+    from x1 on it is flux: radiance times square unit times sr";
+/// What the column `β eye` holds.
+const BETA_EYE: &str = "Luminance that a walk from the eye carries when it has come here: reflectances \
+    and the like, without a unit; the whole film counts as one";
+/// What the column `p light` holds.
+const P_LIGHT: &str = "Density of making the vertex from the light side: of x0 per square unit of the \
+    scene file, of the others per sr (solid angle at the vertex before), and a \
+    probability behind a mirror or glass. On a point or the sun x0 has a \
+    probability, in the sky a density per sr; x1 has one per square unit of a disk \
+    behind sun and sky";
+/// What the column `p eye` holds.
+const P_EYE: &str = "Density of making the vertex from the eye side, per sr (solid angle at the \
+    vertex after); a probability behind a mirror or glass; per film for the last \
+    two";
+/// What the column `G` holds.
+const G: &str = "Geometry term of the edge to the next vertex, cos cos / r², per square unit of \
+    the scene file; at the lens with film area per solid angle in the place of its \
+    cosine";
 
-fn columns(detail: &PathDetail) -> [Vec<String>; 5] {
+/// A row a vertex.
+pub(super) fn table(detail: &PathDetail) -> Table {
     let vertices = || detail.vertices.iter().enumerate();
     let walked = |density: f64, throughput: Rgb| {
         if density > 0.0 { format::exact(throughput.luminance()) } else { "–".to_owned() }
     };
     let density = |p: f64| if p > 0.0 { format::exact(p) } else { "–".to_owned() };
-    [
-        vertices().map(|(i, v)| walked(v.light_pdf, detail.light_throughput(i))).collect(),
-        vertices().map(|(i, v)| walked(v.eye_pdf, detail.eye_throughput(i))).collect(),
-        vertices().map(|(_, v)| density(v.light_pdf)).collect(),
-        vertices().map(|(_, v)| density(v.eye_pdf)).collect(),
-        detail.geometry.iter().map(|geometry| format::exact(*geometry)).collect(),
-    ]
+    let from_light = vertices().map(|(i, v)| walked(v.light_pdf, detail.light_throughput(i)));
+    let from_eye = vertices().map(|(i, v)| walked(v.eye_pdf, detail.eye_throughput(i)));
+    Table {
+        name: "light",
+        columns: vec![
+            Column::new("β light", BETA_LIGHT, from_light),
+            Column::new("β eye", BETA_EYE, from_eye),
+            Column::new("p light", P_LIGHT, vertices().map(|(_, v)| density(v.light_pdf))),
+            Column::new("p eye", P_EYE, vertices().map(|(_, v)| density(v.eye_pdf))),
+            Column::new("G", G, detail.geometry.iter().copied().map(format::exact)),
+        ],
+    }
 }
 
 /// All of one vertex.
@@ -104,9 +95,4 @@ pub(super) fn lines(path: Described<'_>, detail: &PathDetail, index: usize) -> V
         lines.push(("G after", format::exact(*geometry), tip));
     }
     lines
-}
-
-/// Red, green, blue.
-pub(super) fn color(rgb: Rgb) -> String {
-    [rgb.r, rgb.g, rgb.b].map(format::exact).join("  ")
 }

@@ -4,6 +4,7 @@ mod align;
 mod file;
 mod light;
 mod splits;
+mod table;
 mod vertices;
 
 use std::time::Duration;
@@ -12,12 +13,15 @@ use common::{ExplorerCommand, Order, PathHeader, Seed};
 use egui::{Button, Color32, Label, RichText, Sense, Ui, vec2};
 
 use self::file::UNKNOWN;
-use self::vertices::Described;
-use super::Panel;
+use self::table::Described;
 use super::widgets::{dot, empty_state, row};
-use crate::command::{Command, PathCommand, VertexStep};
+use super::{Panel, Section};
+use crate::command::{Command, PathCommand};
+use crate::keys::Group;
 use crate::source::dump::Outcome;
 use crate::source::selection::Detail;
+use crate::value::PanelName;
+use crate::value::VertexStep;
 use crate::value::format;
 use crate::value::theme;
 use crate::world::World;
@@ -55,6 +59,20 @@ impl Panel for PathPanel {
             Some(detail) => splits::show(ui, path, detail),
             None => without_numbers(ui, world, path),
         }
+    }
+}
+
+impl Section for PathPanel {
+    const NAME: PanelName = PanelName::Path;
+    const TITLE: &'static str = "Selected path";
+    const HELP: &'static [&'static str] = &[
+        "Everything that is known of the path that was clicked in the view. Click again there for \
+         the next one under the cursor.",
+    ];
+    const KEYS: &'static [Group] = &[Group::Paths];
+
+    fn text(world: &World<'_>) -> String {
+        world.selection.map_or_else(String::new, |selection| selection.text(&world.names()))
     }
 }
 

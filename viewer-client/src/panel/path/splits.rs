@@ -3,7 +3,7 @@
 use common::PathDetail;
 use egui::{Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
-use super::vertices::Described;
+use super::table::Described;
 use crate::panel::hover::{self, Pointed};
 use crate::source::selection::Selection;
 use crate::value::format;

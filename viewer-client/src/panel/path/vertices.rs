@@ -4,12 +4,13 @@ use common::{VertexKind, VertexRecord, decode_normal};
 use egui::{Button, Grid, Label, Response, RichText, ScrollArea, Sense, Ui};
 
 use super::align::{aligned, triples};
+use super::table::{Described, Line, Table};
 use super::{file, light};
-use crate::command::{Command, PathCommand, VertexStep};
+use crate::command::{Command, PathCommand};
 use crate::panel::hover::{self, Pointed};
 use crate::panel::widgets::row;
-use crate::source::dump::Act;
-use crate::source::selection::{Names, Selection};
+use crate::source::selection::Names;
+use crate::value::VertexStep;
 
 /// Letters of a name in the table.
 const LONGEST_NAME: usize = 13;
@@ -23,18 +24,6 @@ pub(super) enum Columns {
     /// Throughput, densities, geometry term.
     Light,
 }
-
-/// A path with what its vertices are called.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Described<'a> {
-    pub(super) selection: &'a Selection,
-    pub(super) names: &'a Names<'a>,
-    /// Its record, where it is one of a file of paths.
-    pub(super) record: Option<&'a Act>,
-}
-
-/// A label, its value, and what that is.
-pub(super) type Line = (&'static str, String, &'static str);
 
 /// Shows the table, and all of the vertex that is looked at; that of the others is in their tooltips.
 pub(super) fn show(
@@ -61,8 +50,8 @@ pub(super) fn show(
     });
     // What is too wide for the side scrolls: it would widen the side with every frame.
     ScrollArea::horizontal().id_salt("vertices").show(ui, |ui| match (*columns, detail, record) {
-        (Columns::Light, Some(detail), _) => light::table(ui, path, detail, commands),
-        (Columns::Light, None, Some(record)) => file::table(ui, path, record, commands),
+        (Columns::Light, Some(detail), _) => numbers(ui, path, &light::table(detail), commands),
+        (Columns::Light, None, Some(record)) => numbers(ui, path, &file::table(record), commands),
         _ => places(ui, path, commands),
     });
     if let Some(index) = path.selection.vertex {
@@ -72,7 +61,7 @@ pub(super) fn show(
 }
 
 /// The name of a column, with what it means.
-pub(super) fn title(ui: &mut Ui, text: &str, tip: &str) {
+fn title(ui: &mut Ui, text: &str, tip: &str) {
     let title = Label::new(RichText::new(text).small().weak()).selectable(false);
     ui.add(title.sense(Sense::hover())).on_hover_text(tip);
 }
@@ -99,22 +88,26 @@ fn point(response: Response, path: Described<'_>, i: usize) {
     response.on_hover_ui(|ui| card(ui, path, i));
 }
 
-/// A row a vertex, a column a list of numbers; their points stand below each other.
-pub(super) fn numbers(
-    ui: &mut Ui,
-    path: Described<'_>,
-    columns: &[Vec<String>],
-    commands: &mut Vec<Command>,
-) {
-    let columns: Vec<Vec<String>> = columns.iter().map(|column| aligned(column)).collect();
-    for i in 0..path.selection.vertices.len() {
-        name(ui, path, i, commands);
-        for column in &columns {
-            let text = column.get(i).map_or("", String::as_str);
-            point(ui.label(RichText::new(text).monospace().size(11.0)), path, i);
+/// A row a vertex; the points of the numbers of a column stand below each other.
+fn numbers(ui: &mut Ui, path: Described<'_>, table: &Table, commands: &mut Vec<Command>) {
+    let Table { name: id, columns } = table;
+    let grid = Grid::new(id).num_columns(1 + columns.len()).striped(true).spacing([9.0, 3.0]);
+    grid.show(ui, |ui| {
+        title(ui, "", "");
+        for column in columns {
+            title(ui, column.title, &column.tip);
         }
         ui.end_row();
-    }
+        let columns: Vec<_> = columns.iter().map(|column| aligned(&column.values)).collect();
+        for i in 0..path.selection.vertices.len() {
+            name(ui, path, i, commands);
+            for column in &columns {
+                let text = column.get(i).map_or("", String::as_str);
+                point(ui.label(RichText::new(text).monospace().size(11.0)), path, i);
+            }
+            ui.end_row();
+        }
+    });
 }
 
 fn places(ui: &mut Ui, path: Described<'_>, commands: &mut Vec<Command>) {

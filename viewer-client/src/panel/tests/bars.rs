@@ -8,10 +8,11 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::{Stage, shows};
-use crate::command::{CloudCommand, Command, LayoutCommand, Switch, ThemeName, WindowSide};
+use crate::command::{CloudCommand, Command, LayoutCommand, SessionCommand, WindowCommand};
 use crate::panel::{self, Panel, Placed, help, hint, menu, status};
 use crate::source::status::LinkState;
 use crate::synthetic::welcome;
+use crate::value::{Switch, ThemeChange, WindowSide};
 use crate::world::World;
 
 /// Everything, as in the window.
@@ -99,7 +100,7 @@ fn menus_and_the_sheet_fit_a_low_window() {
     assert!(line.top() >= bar.bottom(), "the bar is not covered");
     assert!(harness.query_by_label_contains("Quit").is_some(), "the last line is there");
     let mut stage = Stage::new(help::Help);
-    stage.settings.layout.help = true;
+    stage.settings.window.help = true;
     let mut harness = window(stage, 640.0, height);
     for label in ["Keys and mouse", "Close"] {
         let rect = harness.get_by_label(label).rect();
@@ -112,7 +113,7 @@ fn menus_and_the_sheet_fit_a_low_window() {
     assert!(list.top() >= heading.bottom(), "the lists begin below the heading");
     harness.get_by_label("Close").click();
     harness.run_steps(3);
-    let expected = [Command::Layout(LayoutCommand::Help(Switch::Off))];
+    let expected = [Command::Window(WindowCommand::Help(Switch::Off))];
     assert_eq!(harness.state().said, expected, "closed");
 }
 
@@ -143,7 +144,7 @@ fn the_status_bar_tells_every_state() {
     assert!(shows(&lost, "Disconnected: gone; retrying in"), "lost, with its reason");
     lost.get_by_label("Now").click();
     lost.run_steps(3);
-    assert_eq!(lost.state().said, [Command::Reconnect], "connect now");
+    assert_eq!(lost.state().said, [Command::Session(SessionCommand::Reconnect)], "connect now");
 }
 
 #[test]
@@ -160,7 +161,7 @@ fn menus_hold_every_key() {
     harness.get_by_label_contains("Forget every path").click();
     harness.run();
     let expected = [
-        Command::Layout(LayoutCommand::Theme(ThemeName::Toggle)),
+        Command::Window(WindowCommand::Theme(ThemeChange::Toggle)),
         Command::Cloud(CloudCommand::Clear),
     ];
     assert_eq!(harness.state().said, expected, "a button and a menu");
@@ -191,23 +192,23 @@ fn the_first_steps_go_when_they_are_known() {
     harness.run();
     assert!(!shows(&harness, "Got it"), "not for those who know");
     stage = Stage::new(hint::Hint);
-    stage.settings.layout.hint = true;
+    stage.settings.window.hint = true;
     stage.model = crate::source::model::Model::new(crate::synthetic::mesh());
     let mut harness = stage.harness();
     harness.run();
     harness.get_by_label("Got it").click();
     harness.run();
-    let expected = [Command::Layout(LayoutCommand::Hint(Switch::Off))];
+    let expected = [Command::Window(WindowCommand::Hint(Switch::Off))];
     assert_eq!(harness.state().said, expected, "one click");
 }
 
 #[test]
 fn the_help_sheet_lists_every_key() {
     let mut stage = Stage::new(help::Help);
-    stage.settings.layout.help = true;
+    stage.settings.window.help = true;
     let mut harness = stage.harness();
     harness.run_steps(4);
-    for binding in crate::keys::bindings(crate::keys::KeyPreset::Today) {
+    for binding in crate::keys::bindings(crate::value::KeyPreset::Today) {
         assert!(shows(&harness, binding.help), "`{}` is missing", binding.help);
     }
 }

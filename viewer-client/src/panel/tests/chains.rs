@@ -75,8 +75,8 @@ fn chains_that_disagree_raise_an_alarm_that_leads_there() {
         panic!("five clicks, not {said:?}");
     };
     let layer = |layer| Command::Image(ImageCommand::Show(layer));
-    assert_eq!(*show, layer(crate::command::Layer::Disagreement), "the map");
-    assert_eq!(*map, layer(crate::command::Layer::Acceptance), "another one");
+    assert_eq!(*show, layer(crate::value::Layer::Disagreement), "the map");
+    assert_eq!(*map, layer(crate::value::Layer::Acceptance), "another one");
     let [u0, v0, ..] = crate::settings::region::region_of(text).expect("a rectangle");
     assert!((u0 - 2.0 / 40.0).abs() < 1e-7 && (v0 - 4.0 / 30.0).abs() < 1e-7, "{text}");
     assert_eq!(explore.to_string(), "explorer seed 0.0.0", "the path where a chain stayed");

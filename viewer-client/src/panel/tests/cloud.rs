@@ -4,9 +4,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::Stage;
-use crate::command::WindowSide;
-use crate::command::{CameraCommand, CloudCommand, Command, SceneCommand, Switch};
+use crate::command::{CameraCommand, CloudCommand, Command, SceneCommand};
 use crate::panel::{cloud, scene};
+use crate::value::Switch;
+use crate::value::WindowSide;
 
 #[test]
 fn the_cloud_panel_speaks_in_commands() {

@@ -153,12 +153,12 @@ fn the_image_is_compared_with_a_reference() {
         harness.run();
     }
     let expected = [
-        ImageCommand::Show(crate::command::Layer::Difference),
-        ImageCommand::Tone(crate::command::ToneCurve::False),
+        ImageCommand::Show(crate::value::Layer::Difference),
+        ImageCommand::Tone(crate::value::ToneCurve::False),
         ImageCommand::Forget,
     ];
     assert_eq!(harness.state().said, expected.map(Command::Image), "three clicks");
-    harness.state_mut().settings.image.layer = crate::command::Layer::Error;
+    harness.state_mut().settings.image.layer = crate::value::Layer::Error;
     harness.run();
     assert!(shows(&harness, "relative squared error"), "its colours are explained");
 }
@@ -166,7 +166,7 @@ fn the_image_is_compared_with_a_reference() {
 #[test]
 fn maps_wait_for_the_daemon() {
     let mut stage = image_stage(false);
-    stage.settings.image.layer = crate::command::Layer::Dwell;
+    stage.settings.image.layer = crate::value::Layer::Dwell;
     stage.status.statistics(diagnosed());
     let mut harness = stage.harness();
     harness.run();

@@ -4,14 +4,16 @@
 mod bars;
 mod chains;
 mod cloud;
-mod habits;
 mod image;
 mod paths;
+mod sections;
+mod settings;
 mod viewport;
 
 use std::time::Instant;
 
-use common::{ChainTotals, FailureCount, Statistics, StrategyStatistics};
+use common::{ChainTotals, FailureCount, FilterScene, Statistics, StrategyStatistics};
+use egui::{Event, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
@@ -20,6 +22,7 @@ use crate::camera::ViewCamera;
 use crate::imaging::Reference;
 use crate::imaging::film::Film;
 use crate::settings::Settings;
+use crate::source::filter_scene;
 use crate::source::selection::Selection;
 use crate::source::status::Status;
 use crate::source::store::Store;
@@ -37,7 +40,7 @@ pub(super) struct Stage {
     pub(super) recent: Vec<String>,
     pub(super) model: Option<crate::source::model::Model>,
     pub(super) playback: Option<crate::source::playback::Playback>,
-    pub(super) scrub: Option<u64>,
+    filter_scene: FilterScene,
     panel: Option<Box<dyn Panel>>,
     pub(super) said: Vec<Command>,
 }
@@ -56,7 +59,7 @@ impl Stage {
             recent: Vec::new(),
             model: None,
             playback: None,
-            scrub: None,
+            filter_scene: filter_scene(None, None),
             panel: Some(Box::new(panel)),
             said: Vec::new(),
         }
@@ -80,13 +83,14 @@ impl Stage {
             reference: self.reference.as_ref(),
             flip: self.flip.as_ref(),
             selection: self.selection.as_ref(),
-            moment: self.status.steering.focus.moment(self.scrub),
-            scrub: self.scrub,
+            moment: self.status.steering.focus.moment(),
+            scrub: self.status.steering.focus.scrub,
             recent: &self.recent,
             has_home: true,
             playback: self.playback.as_ref(),
             counted: None,
             model: self.model.as_ref(),
+            filter_scene: &self.filter_scene,
             now: Instant::now(),
         }
     }
@@ -95,6 +99,8 @@ impl Stage {
     pub(super) fn show(&mut self, ui: &mut Ui) {
         let Some(mut panel) = self.panel.take() else { return };
         let mut said = std::mem::take(&mut self.said);
+        let mesh = self.model.as_ref().map(|model| &model.mesh);
+        self.filter_scene = filter_scene(self.status.welcome.as_ref(), mesh);
         let world = self.world();
         hover::begin(ui.ctx());
         panel.ui(ui, &world, &mut said);

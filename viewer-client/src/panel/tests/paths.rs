@@ -8,11 +8,12 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::{Stage, shows};
-use crate::command::{Command, PathCommand, VertexStep};
+use crate::command::{Command, PathCommand};
 use crate::panel::hover::{self, Pointed};
 use crate::panel::{path, playback};
 use crate::source::selection::{Detail, Selection};
 use crate::synthetic::welcome;
+use crate::value::VertexStep;
 
 /// A path of two edges on the room, with made-up numbers.
 pub(super) fn selected(detail: Detail) -> Selection {

@@ -3,7 +3,7 @@
 use egui::{Key, PointerButton, Response, Ui, Vec2};
 
 use crate::command::{CameraCommand, Command};
-use crate::keys::{KeyPreset, MousePreset};
+use crate::value::{KeyPreset, MousePreset};
 use crate::world::World;
 
 /// Degrees the view turns for a drag over the height of the viewport.
@@ -32,7 +32,7 @@ pub(super) fn read(ui: &Ui, response: &Response, world: &World<'_>, commands: &m
         push(command);
     }
     if world.camera.is_flying()
-        && world.settings.layout.keys == KeyPreset::Today
+        && world.settings.window.keys == KeyPreset::Today
         && let Some(command) = flight(ui)
     {
         push(command);
@@ -49,7 +49,7 @@ fn drag(ui: &Ui, response: &Response, world: &World<'_>) -> Option<CameraCommand
         Dragging::Shift => return Some(CameraCommand::Pan(delta.x, -delta.y)),
         Dragging::Closer => {
             let factor = (CLOSER * (delta.x - delta.y)).exp().clamp(0.1, 10.0);
-            return Some(CameraCommand::Zoom { factor, at: [0.0; 2] });
+            return Some(CameraCommand::Zoom(factor, [0.0; 2]));
         }
     }
     // Screens count downwards; a drag to the right turns the scene to the right.
@@ -73,14 +73,14 @@ fn dragging(ui: &Ui, response: &Response, world: &World<'_>) -> Option<Dragging>
     let [left, middle, right] =
         [PointerButton::Primary, PointerButton::Middle, PointerButton::Secondary]
             .map(|button| response.dragged_by(button));
-    if world.settings.layout.keys == KeyPreset::Classic {
+    if world.settings.window.keys == KeyPreset::Classic {
         return match () {
             () if modifiers.shift => Some(Dragging::Shift),
             () if right => Some(Dragging::Turn),
             () => None,
         };
     }
-    match world.settings.layout.mouse {
+    match world.settings.window.mouse {
         MousePreset::Rerun if right || modifiers.shift => Some(Dragging::Shift),
         MousePreset::Rerun => Some(Dragging::Turn),
         MousePreset::Blender if middle && modifiers.shift => Some(Dragging::Shift),
@@ -102,7 +102,7 @@ fn wheel(ui: &Ui, response: &Response) -> Option<CameraCommand> {
     let half_height = (0.5 * response.rect.height()).max(1.0);
     let centre = response.rect.center();
     let at = response.hover_pos().map_or(Vec2::ZERO, |p| (p - centre) / half_height);
-    Some(CameraCommand::Zoom { factor: factor.clamp(0.1, 10.0), at: [at.x, -at.y] })
+    Some(CameraCommand::Zoom(factor.clamp(0.1, 10.0), [at.x, -at.y]))
 }
 
 /// Steps while keys are held; time is what it took to draw the last frame.

@@ -7,8 +7,8 @@ use common::VertexRecord;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 use glam::Vec3;
 
+use super::ground::{MARGIN, veil};
 use super::highlight::arrow_head;
-use super::overlay::{MARGIN, veil};
 use super::project::Projector;
 use crate::panel::hover;
 use crate::source::steering::Moment;
@@ -39,7 +39,7 @@ pub(super) fn paint(painter: &Painter, projector: &Projector, rect: Rect, world:
         fan(&pen, world, moment);
     }
     step(&pen, moment);
-    key(painter, rect, moment, world.settings.layout.dark);
+    key(painter, rect, moment, world.settings.window.is_dark());
 }
 
 /// All proposals of the fan that `moment` belongs to, fainter the less likely they are; those that

@@ -36,7 +36,8 @@ impl Glimpse {
     pub(super) fn show(
         &mut self,
         ui: &Ui,
-        (response, projector): (&Response, &Projector),
+        response: &Response,
+        projector: &Projector,
         world: &World<'_>,
     ) {
         let busy = ui.input(|input| input.pointer.any_down() || input.smooth_scroll_delta.y != 0.0);
@@ -61,7 +62,7 @@ impl Glimpse {
         }
         if !self.looked {
             self.looked = true;
-            self.found = look(projector, place, world);
+            self.found = path_at(projector, place, world);
         }
         let Some(found) = &self.found else { return };
         let [u, v] = found.header.film;
@@ -95,7 +96,7 @@ fn off(place: Pos2, [a, b]: [Pos2; 2]) -> f32 {
     (a + t * along).distance(place)
 }
 
-fn look(projector: &Projector, place: Pos2, world: &World<'_>) -> Option<Selection> {
+fn path_at(projector: &Projector, place: Pos2, world: &World<'_>) -> Option<Selection> {
     let sight = Sight {
         store: world.store,
         lens: &projector.lens,
@@ -104,7 +105,7 @@ fn look(projector: &Projector, place: Pos2, world: &World<'_>) -> Option<Selecti
         mesh: world.model.map(|model| &model.mesh),
         newest: (world.settings.cloud.shown as usize).min(MOST_PATHS),
     };
-    sight.paths(projector.aim(place, TOLERANCE)).into_iter().next()
+    sight.paths(projector.pointer(place, TOLERANCE)).into_iter().next()
 }
 
 fn paint(painter: &Painter, projector: &Projector, found: &Selection) {

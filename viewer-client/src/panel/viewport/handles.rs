@@ -4,7 +4,7 @@ use egui::{Color32, Id, Painter, Pos2, Rect, Response, Stroke, StrokeKind, Ui, v
 use glam::Vec3;
 
 use super::project::Projector;
-use crate::command::Handles;
+use crate::value::Handles;
 use crate::value::theme;
 
 /// How near to a handle the cursor must be, in points.
@@ -46,7 +46,8 @@ impl Hold {
     pub(super) fn pull(
         self,
         ui: &Ui,
-        (response, projector): (&Response, &Projector),
+        response: &Response,
+        projector: &Projector,
         ball: Ball,
     ) -> Option<Ball> {
         let id = Id::unique(self.name);
@@ -60,8 +61,9 @@ impl Hold {
             ui.data_mut(|data| data.insert_temp::<Option<Grip>>(id, None));
         }
         let grip = held.filter(|_| response.dragged())?;
-        let hand = (response.interact_pointer_pos(), response.drag_delta());
-        Some(pulled(projector, ball, (grip, self.handles), hand).unwrap_or(ball))
+        let (pointer, delta) = (response.interact_pointer_pos(), response.drag_delta());
+        let moved = pulled(projector, ball, grip, self.handles, pointer, delta);
+        Some(moved.unwrap_or(ball))
     }
 
     fn grip_at(self, projector: &Projector, ball: Ball, place: Pos2) -> Option<Grip> {
@@ -110,8 +112,10 @@ fn rim(projector: &Projector, ball: Ball) -> Vec3 {
 fn pulled(
     projector: &Projector,
     ball: Ball,
-    (grip, handles): (Grip, Handles),
-    (pointer, delta): (Option<Pos2>, egui::Vec2),
+    grip: Grip,
+    handles: Handles,
+    pointer: Option<Pos2>,
+    delta: egui::Vec2,
 ) -> Option<Ball> {
     let lens = &projector.lens;
     let depth = (ball.centre - lens.eye).dot(lens.forward);
@@ -151,10 +155,11 @@ mod tests {
     use egui_kittest::kittest::Queryable as _;
 
     use super::*;
-    use crate::command::{Command, FilterCommand, Light, SceneCommand, Sphere};
+    use crate::command::{Command, FilterCommand, SceneCommand};
     use crate::panel::tests::Stage;
     use crate::panel::viewport::Viewport;
     use crate::value::Bounds;
+    use crate::value::{Light, Sphere};
 
     /// What is said when the x axis of a ball of this radius in the middle is pulled outwards.
     fn pull(mut stage: Stage, radius: f32) -> Vec<Command> {

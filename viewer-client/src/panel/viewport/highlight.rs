@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, FontId, Painter, Pos2, Stroke, vec2};
 use glam::Vec3;
 
-use super::overlay::veil;
+use super::ground::veil;
 use super::project::Projector;
 use crate::panel::hover::{self, Pointed};
 use crate::source::selection::Selection;
@@ -19,7 +19,7 @@ const MOST_NUMBERS: usize = 24;
 /// Draws the selected path.
 pub(super) fn paint(painter: &Painter, projector: &Projector, world: &World<'_>, ink: Color32) {
     let Some(selection) = world.selection else { return };
-    let rim = if world.settings.layout.dark { Color32::BLACK } else { Color32::WHITE };
+    let rim = if world.settings.window.is_dark() { Color32::BLACK } else { Color32::WHITE };
     let points: Vec<Vec3> = selection.vertices.iter().map(|v| v.position.into()).collect();
     let color = theme::SELECTED;
     // First all rims, or they would cut through crossing edges.

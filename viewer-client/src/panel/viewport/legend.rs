@@ -5,10 +5,10 @@ use egui::epaint::Mesh;
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
-use super::overlay::{AXES, MARGIN, veil};
-use crate::command::{ColorMode, ColorScale};
+use super::ground::{AXES, MARGIN, veil};
 use crate::value::format;
 use crate::value::theme;
+use crate::value::{ColorMode, ColorScale};
 use crate::world::World;
 
 /// Room for the dot before an entry, in points.
@@ -31,7 +31,7 @@ pub(super) fn paint(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color
         column.entry("end, at the camera", theme::CAMERA_END);
         column.entry("start, on the light", theme::LIGHT_END);
     }
-    let ramp = theme::ramp(world.settings.layout.dark);
+    let ramp = theme::ramp(world.settings.window.is_dark());
     let scale = cloud.scale;
     match cloud.color {
         ColorMode::Radiance | ColorMode::Constant => {}

@@ -4,8 +4,9 @@ use egui::{Align2, Color32, FontId, Painter, Response, Stroke, Ui, vec2};
 
 use super::handles::{Ball, Hold};
 use super::project::Projector;
-use crate::command::{Command, Handles, Light, SceneCommand};
+use crate::command::{Command, SceneCommand};
 use crate::value::theme;
+use crate::value::{Handles, Light};
 use crate::world::World;
 
 /// Half the length of its handles in radii of the scene.
@@ -28,12 +29,13 @@ fn ball(world: &World<'_>) -> Option<Ball> {
 /// Takes the user's hand; true when it is on the light.
 pub(super) fn interact(
     ui: &Ui,
-    hand: (&Response, &Projector),
+    response: &Response,
+    projector: &Projector,
     world: &World<'_>,
     commands: &mut Vec<Command>,
 ) -> bool {
     let Some(ball) = ball(world) else { return false };
-    let Some(moved) = HOLD.pull(ui, hand, ball) else { return false };
+    let Some(moved) = HOLD.pull(ui, response, projector, ball) else { return false };
     let place = world.names().world(moved.centre.into()).to_array();
     commands.push(Command::Scene(SceneCommand::Light(Light::At(place))));
     true

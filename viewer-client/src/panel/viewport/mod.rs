@@ -3,6 +3,7 @@
 mod gesture;
 mod ghost;
 mod glimpse;
+mod ground;
 mod handles;
 mod highlight;
 mod legend;
@@ -17,7 +18,7 @@ mod selectors;
 use egui::{Role, Sense, Ui, WidgetInfo};
 
 use self::project::Projector;
-use super::{Panel, note_pick};
+use super::{Panel, reveal_pick};
 use crate::command::{Command, PathCommand};
 use crate::draw::gpu::ViewportCallback;
 use crate::world::World;
@@ -36,17 +37,16 @@ impl Panel for Viewport {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Viewport"));
         let projector = Projector::new(world.camera.lens(rect.aspect_ratio()), rect);
-        let hand = (&response, &projector);
-        let held = selectors::interact(ui, hand, world, commands)
-            || light::interact(ui, hand, world, commands);
+        let held = selectors::interact(ui, &response, &projector, world, commands)
+            || light::interact(ui, &response, &projector, world, commands);
         if !held {
             gesture::read(ui, &response, world, commands);
             if response.clicked()
                 && let Some(place) = response.interact_pointer_pos()
             {
-                let aim = projector.aim(place, TOLERANCE);
-                commands.push(Command::Path(PathCommand::Pick(aim)));
-                note_pick(ui);
+                let pointer = projector.pointer(place, TOLERANCE);
+                commands.push(Command::Path(PathCommand::Pick(pointer)));
+                reveal_pick(ui);
             }
         }
 
@@ -57,7 +57,7 @@ impl Panel for Viewport {
         ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, callback));
         overlay::paint(ui, &projector, rect, world);
         if world.model.is_some() {
-            self.glimpse.show(ui, (&response, &projector), world);
+            self.glimpse.show(ui, &response, &projector, world);
         }
     }
 }

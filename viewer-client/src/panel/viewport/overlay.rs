@@ -1,28 +1,27 @@
 //! What is written over the view: axes, legend, the render camera's gate, and why it is empty.
 
+use egui::text::LayoutJob;
 use egui::{
-    Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, StrokeKind, Ui, pos2, vec2,
+    Align, Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, StrokeKind, Ui,
+    pos2, vec2,
 };
 use glam::Vec3;
 
+use super::ground::{DISC, MARGIN, veil};
 use super::project::Projector;
-use super::{ghost, highlight, light, others, pointed, selectors};
+use super::{ghost, highlight, legend, light, others, pointed, selectors};
 use crate::source::status::LinkState;
 use crate::value::format;
 use crate::value::theme;
 use crate::world::World;
 
-/// Distance of texts from the edge in points.
-pub(super) const MARGIN: f32 = 14.0;
-/// Radius of the disc that the axes lie on, in points.
-const DISC: f32 = 33.0;
-/// Height above the lower edge, in points, from which on nothing of the axes is in the way.
-pub(super) const AXES: f32 = MARGIN + 26.0 + DISC + 8.0;
+/// Distance of lines in the middle of the view, in points.
+const GAP: f32 = 6.0;
 
 /// Writes over the view.
 pub(super) fn paint(ui: &Ui, projector: &Projector, rect: Rect, world: &World<'_>) {
     let painter = ui.painter().with_clip_rect(rect);
-    let ink = if world.settings.layout.dark {
+    let ink = if world.settings.window.is_dark() {
         Color32::from_rgb(214, 219, 227)
     } else {
         Color32::from_rgb(40, 44, 50)
@@ -41,7 +40,7 @@ pub(super) fn paint(ui: &Ui, projector: &Projector, rect: Rect, world: &World<'_
     pointed::paint(&painter, projector, world, ink);
     axes(&painter, rect, world, ink);
     captions(&painter, rect, world, ink);
-    super::legend::paint(&painter, rect, world, ink);
+    legend::paint(&painter, rect, world, ink);
 }
 
 /// Darkens what the render camera does not see.
@@ -67,6 +66,10 @@ fn gate(painter: &Painter, rect: Rect, world: &World<'_>) {
 fn nothing_yet(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
     let status = world.status;
     let (title, lines) = match &status.link {
+        LinkState::Idle => {
+            let remedy = "The menu Connection leads to a daemon.".to_owned();
+            ("Nothing to look at".to_owned(), vec![remedy])
+        }
         LinkState::Connecting => {
             (format!("Connecting to {} …", status.address), vec!["One moment.".to_owned()])
         }
@@ -76,8 +79,7 @@ fn nothing_yet(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
         LinkState::Disconnected { reason, retry_at } => {
             let seconds = retry_at.saturating_duration_since(world.now).as_secs_f32().ceil();
             let lines = vec![
-                reason.clone(),
-                format!("Start a daemon with  tracer-server serve --listen {}", status.address),
+                format::sentence(reason),
                 format!("Retrying in {seconds:.0} s; R connects now."),
             ];
             ("No connection".to_owned(), lines)
@@ -101,14 +103,24 @@ fn nothing_found(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32)
     }
 }
 
-/// A title and lines in the middle of the view.
+/// A title and lines in the middle of the view, broken where the view is too narrow for them.
 fn tell(painter: &Painter, rect: Rect, ink: Color32, title: &str, lines: Vec<String>) {
-    let centre = rect.center() - vec2(0.0, 10.0 * lines.len() as f32);
-    painter.text(centre, Align2::CENTER_BOTTOM, title, FontId::proportional(22.0), ink);
-    for (i, line) in lines.into_iter().enumerate() {
-        let place = centre + vec2(0.0, 12.0 + 21.0 * i as f32);
-        let faint = ink.gamma_multiply(0.7);
-        painter.text(place, Align2::CENTER_TOP, line, FontId::proportional(14.0), faint);
+    let faint = ink.gamma_multiply(0.7);
+    let width = (rect.width() - 2.0 * MARGIN).max(0.0);
+    let wrapped = |line| {
+        let mut job = LayoutJob::simple(line, FontId::proportional(14.0), faint, width);
+        job.halign = Align::Center;
+        painter.layout_job(job)
+    };
+    let lines: Vec<_> = lines.into_iter().map(wrapped).collect();
+    let height: f32 = lines.iter().map(|line| line.size().y + GAP).sum();
+    let mut place = rect.center() - vec2(0.0, 0.5 * height);
+    painter.text(place, Align2::CENTER_BOTTOM, title, FontId::proportional(22.0), ink);
+    place.y += 2.0 * GAP;
+    for line in lines {
+        let below = line.size().y + GAP;
+        painter.galley(place, line, faint);
+        place.y += below;
     }
 }
 
@@ -169,12 +181,4 @@ fn text(painter: &Painter, place: Pos2, anchor: Align2, text: &str, color: Color
     let rect = anchor.anchor_size(place, galley.size());
     veil(painter, rect, color);
     painter.galley(rect.min, galley, color);
-}
-
-/// Dims what lies behind light texts, and brightens it behind dark ones.
-pub(super) fn veil(painter: &Painter, rect: Rect, ink: Color32) {
-    let light_ink = ink.intensity() > 0.4;
-    let shade =
-        if light_ink { Color32::from_black_alpha(130) } else { Color32::from_white_alpha(150) };
-    painter.rect_filled(rect.expand2(vec2(7.0, 3.0)), 5.0, shade);
 }

@@ -1,14 +1,14 @@
 //! The choices of the user as numbers for the shaders.
 
 use egui::{Color32, Rgba};
-use glam::{UVec4, Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 use shaders::{FrameUniforms, PALETTE_SIZE, RAMP_SIZE};
 
 use crate::camera::NEAR;
-use crate::command::{Blend, ColorMode, ColorScale, Light, Lighting, Marks, Shading};
 use crate::draw::gpu::{Crossing, PageRange, Picture};
-use crate::settings::SceneSettings;
+use crate::settings::{CloudSettings, SceneSettings};
 use crate::value::theme;
+use crate::value::{Blend, ColorMode, ColorScale, Light, Lighting, Marks, Shading};
 use crate::world::World;
 
 /// Opacity of surfaces seen from behind when backs are cut away.
@@ -26,47 +26,11 @@ const LONE_DOT: f32 = 1.5;
 
 /// What to draw in a viewport of `size` pixels.
 pub(super) fn of(world: &World<'_>, size: [u32; 2], pixels_per_point: f32) -> Picture {
-    let [width, height] = size.map(|side| side as f32);
-    let lens = world.camera.lens(width / height);
     let cloud = &world.settings.cloud;
-    let dark = world.settings.layout.dark;
-    let (darkest, brightest) = world.store.tone().range();
-    let inner_dots =
-        if cloud.marks == Marks::Lines { cloud.dots } else { cloud.dots.max(LONE_DOT) };
-    let start_dots = if cloud.ends { 0.9 * cloud.width + 0.6 } else { inner_dots };
-    let textured = world.settings.scene.shading != Shading::Plain;
-    let uniforms = FrameUniforms {
-        view_projection: lens.view_projection(),
-        eye: lens.eye.extend(NEAR),
-        up: world.camera.up().extend(if dark { 1.0 } else { 0.0 }),
-        viewport: Vec4::new(width, height, 1.0 / width, 1.0 / height),
-        line: line(world, pixels_per_point),
-        fade: Vec4::new(cloud.fade, FADED, glow(cloud.blend, dark), start_dots * pixels_per_point),
-        tone: Vec4::new(
-            darkest,
-            1.0 / (brightest - darkest).max(1e-3),
-            inner_dots * pixels_per_point,
-            if cloud.ends { 1.0 } else { 0.0 },
-        ),
-        surface: surface(&world.settings.scene),
-        light: light(world, lens.eye),
-        paint: Vec4::new(f32::from(u8::from(textured)), 0.0, 0.0, 0.0),
-        count: UVec4::new(
-            world.store.newest_ordinal(),
-            color_code(cloud.color),
-            u32::from(cloud.marks == Marks::Ends),
-            u32::from(cloud.scale == ColorScale::Log),
-        ),
-        clip: world.settings.scene.clip_plane(world.camera.bounds()),
-        cue: cue(world, lens.eye),
-        constant: linear(theme::ACCENT),
-        palette: palette(),
-        ramp: ramp(dark),
-    };
     let ranges = world.store.newest(cloud.shown as usize);
     Picture {
         size,
-        uniforms,
+        uniforms: uniforms(world, size, pixels_per_point),
         paths: ranges.into_iter().map(|(serial, first)| PageRange { serial, first }).collect(),
         surfaces: world.settings.scene.shading != Shading::Off,
         lines: cloud.marks == Marks::Lines,
@@ -77,34 +41,79 @@ pub(super) fn of(world: &World<'_>, size: [u32; 2], pixels_per_point: f32) -> Pi
     }
 }
 
-fn line(world: &World<'_>, pixels_per_point: f32) -> Vec4 {
+fn uniforms(world: &World<'_>, size: [u32; 2], pixels_per_point: f32) -> FrameUniforms {
+    let [width, height] = size.map(|side| side as f32);
+    let lens = world.camera.lens(width / height);
     let cloud = &world.settings.cloud;
-    // Seen from the pinhole itself, the last edges are points on the screen and hide nothing.
-    let at_lens = if world.camera.is_through() { 1.0 } else { AT_LENS };
-    let strength = if world.settings.layout.dark { 1.0 } else { ON_LIGHT_GROUND };
-    let opacity = (strength * cloud.opacity).min(1.0);
-    Vec4::new(cloud.width * pixels_per_point, opacity, cloud.hidden, at_lens)
+    let dark = world.settings.window.is_dark();
+    let (darkest, brightest) = world.store.tone().range();
+    let [start_radius, dot_radius] = dots(cloud).map(|points| points * pixels_per_point);
+    let [opacity, edges] = surfaces(&world.settings.scene);
+    let is = u32::from;
+    FrameUniforms {
+        view_projection: lens.view_projection(),
+        eye: lens.eye,
+        near: NEAR,
+        up: world.camera.up(),
+        dark: f32::from(u8::from(dark)),
+        light: light(world, lens.eye),
+        phong: f32::from(u8::from(world.settings.scene.lighting == Lighting::Phong)),
+        constant: linear(theme::ACCENT).truncate(),
+        glow: glow(cloud.blend, dark),
+        clip: world.settings.scene.clip_plane(world.camera.bounds()),
+        line_width: cloud.width * pixels_per_point,
+        line_opacity: (if dark { 1.0 } else { ON_LIGHT_GROUND } * cloud.opacity).min(1.0),
+        hidden_opacity: cloud.hidden,
+        // Seen from the pinhole itself, the last edges are points on the screen and hide nothing.
+        lens_opacity: if world.camera.is_through() { 1.0 } else { AT_LENS },
+        start_radius,
+        dot_radius,
+        surface_opacity: opacity,
+        back_opacity: if world.settings.scene.cutaway { CUTAWAY } else { 1.0 },
+        edge_strength: edges,
+        shaded: if world.settings.scene.shading == Shading::Texture { 0.0 } else { 1.0 },
+        cue_strength: cloud.cue,
+        cue_begin: cue_begin(world, lens.eye),
+        cue_inverse_reach: 0.5 / world.camera.bounds().radius(),
+        fade_age: cloud.fade,
+        faded: FADED,
+        darkest,
+        inverse_range: 1.0 / (brightest - darkest).max(1e-3),
+        unmatched_opacity: cloud.dim,
+        newest: world.store.newest_ordinal(),
+        color_mode: color_code(cloud.color),
+        ends_only: is(cloud.marks == Marks::Ends),
+        logarithmic: is(cloud.scale == ColorScale::Log),
+        tint_ends: is(cloud.ends),
+        textured: is(world.settings.scene.shading != Shading::Plain),
+        size: Vec2::new(width, height),
+        padding: [0; 2],
+        palette: palette(),
+        ramp: ramp(dark),
+    }
 }
 
-fn surface(scene: &SceneSettings) -> Vec4 {
-    let (opacity, edges) = match scene.shading {
-        Shading::Shaded | Shading::Plain | Shading::Texture | Shading::Off => (scene.opacity, 0.0),
-        Shading::Edges => (scene.opacity, 1.0),
-        Shading::Wireframe => (0.0, 1.0),
-    };
-    let backs = if scene.cutaway { CUTAWAY } else { 1.0 };
-    let shaded = if scene.shading == Shading::Texture { 0.0 } else { 1.0 };
-    Vec4::new(opacity, backs, edges, shaded)
+/// Radius of the dots at the light end, and of the others, in points.
+fn dots(cloud: &CloudSettings) -> [f32; 2] {
+    let inner = if cloud.marks == Marks::Lines { cloud.dots } else { cloud.dots.max(LONE_DOT) };
+    [if cloud.ends { 0.9 * cloud.width + 0.6 } else { inner }, inner]
 }
 
-/// Where the light is, in scene units, and by which model surfaces answer it.
-fn light(world: &World<'_>, eye: Vec3) -> Vec4 {
-    let scene = &world.settings.scene;
-    let place = match scene.light {
+/// Opacity of surfaces, and strength of their edges.
+fn surfaces(scene: &SceneSettings) -> [f32; 2] {
+    match scene.shading {
+        Shading::Shaded | Shading::Plain | Shading::Texture | Shading::Off => [scene.opacity, 0.0],
+        Shading::Edges => [scene.opacity, 1.0],
+        Shading::Wireframe => [0.0, 1.0],
+    }
+}
+
+/// Where the light is, in scene units.
+fn light(world: &World<'_>, eye: Vec3) -> Vec3 {
+    match world.settings.scene.light {
         Light::Camera => eye,
         Light::At(place) => world.names().scene(place.into()).as_vec3(),
-    };
-    place.extend(if scene.lighting == Lighting::Phong { 1.0 } else { 0.0 })
+    }
 }
 
 /// How much crossing paths add up: 0 cover, 1 add.
@@ -147,9 +156,7 @@ fn linear(color: Color32) -> Vec4 {
 }
 
 /// The depth cue begins where the scene does.
-fn cue(world: &World<'_>, eye: Vec3) -> Vec4 {
-    let cloud = &world.settings.cloud;
-    let (centre, radius) = (world.camera.bounds().centre(), world.camera.bounds().radius());
-    let begin = ((centre - eye).length() - radius).max(0.0);
-    Vec4::new(cloud.cue, begin, 0.5 / radius, cloud.dim)
+fn cue_begin(world: &World<'_>, eye: Vec3) -> f32 {
+    let bounds = world.camera.bounds();
+    ((bounds.centre() - eye).length() - bounds.radius()).max(0.0)
 }

@@ -16,7 +16,7 @@ use crate::world::World;
 pub(super) fn paint(painter: &Painter, projector: &Projector, world: &World<'_>, ink: Color32) {
     match hover::pointed(painter.ctx()) {
         Some(Pointed::Stay(rank)) => stay(painter, projector, world, rank),
-        Some(Pointed::Film(film)) => ray(painter, projector, world, (film, ink)),
+        Some(Pointed::Film(film)) => ray(painter, projector, world, film, ink),
         _ => {}
     }
 }
@@ -48,12 +48,7 @@ fn line(painter: &Painter, projector: &Projector, vertices: &[VertexRecord]) {
 }
 
 /// The ray of the render camera through a point of the film, to the first surface.
-fn ray(
-    painter: &Painter,
-    projector: &Projector,
-    world: &World<'_>,
-    (film, ink): ([f32; 2], Color32),
-) {
+fn ray(painter: &Painter, projector: &Projector, world: &World<'_>, film: [f32; 2], ink: Color32) {
     let (Some(camera), Some(model)) = (world.camera.render_camera(), world.model) else { return };
     let lens = Lens {
         eye: camera.origin.as_vec3(),

@@ -4,7 +4,7 @@ use egui::{Pos2, Rect, vec2};
 use glam::Vec3;
 
 use crate::camera::{Lens, NEAR};
-use crate::draw::pick::Aim;
+use crate::value::Pointer;
 
 /// Where points of the scene are seen in the viewport.
 #[derive(Clone, Copy, Debug)]
@@ -54,8 +54,8 @@ impl Projector {
     }
 
     /// What the user points at, with a tolerance in screen points.
-    pub(super) fn aim(&self, at: Pos2, tolerance: f32) -> Aim {
+    pub(super) fn pointer(&self, at: Pos2, tolerance: f32) -> Pointer {
         let offset = (at - self.rect.center()) / self.scale();
-        Aim { at: [offset.x, -offset.y], reach: tolerance / self.scale() }
+        Pointer { at: [offset.x, -offset.y], reach: tolerance / self.scale() }
     }
 }

@@ -5,9 +5,11 @@ use glam::{DVec3, Vec3};
 
 use super::handles::{Ball, Hold, REACH};
 use super::project::Projector;
-use crate::command::{Command, FilterCommand, Sphere, kind_name};
+use crate::command::{Command, FilterCommand};
 use crate::draw::pick;
+use crate::keys;
 use crate::value::theme;
+use crate::value::{Sphere, kind_name};
 use crate::world::World;
 
 /// A new sphere's radius in radii of the scene.
@@ -18,13 +20,14 @@ const CIRCLE: usize = 48;
 /// Takes the user's hand; true when it is on a selector, so that it does not turn the camera too.
 pub(super) fn interact(
     ui: &Ui,
-    (response, projector): (&Response, &Projector),
+    response: &Response,
+    projector: &Projector,
     world: &World<'_>,
     commands: &mut Vec<Command>,
 ) -> bool {
     let mut push = |command| commands.push(Command::Filter(command));
     if let Some(place) = response.hover_pos() {
-        let keys = world.settings.layout.keys.selectors();
+        let keys = keys::selectors(world.settings.window.keys);
         let pressed = keys.into_iter().find(|(key, _)| ui.input(|input| input.key_pressed(*key)));
         if let Some((_, kind)) = pressed {
             let ball = under_cursor(projector, place, world);
@@ -42,7 +45,7 @@ pub(super) fn interact(
     }
     let chosen = settings.chosen().and_then(|n| settings.selectors().get(n).map(|s| (n, s)));
     let Some((number, sphere)) = chosen else { return false };
-    if let Some(moved) = hold(world).pull(ui, (response, projector), ball_of(sphere, world)) {
+    if let Some(moved) = hold(world).pull(ui, response, projector, ball_of(sphere, world)) {
         push(FilterCommand::Move(number as u32, place_of(moved, world)));
         return true;
     }
@@ -77,7 +80,7 @@ fn place_of(ball: Ball, world: &World<'_>) -> [f64; 4] {
 /// A sphere on the surface under the cursor, or as deep as the middle of the scene.
 fn under_cursor(projector: &Projector, place: Pos2, world: &World<'_>) -> Ball {
     let lens = &projector.lens;
-    let at = projector.aim(place, 1.0).at;
+    let at = projector.pointer(place, 1.0).at;
     let bounds = world.camera.bounds();
     let scene = &world.settings.scene;
     let mesh = world.model.map(|model| &model.mesh);

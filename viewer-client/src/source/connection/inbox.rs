@@ -1,257 +1,274 @@
-//! What has come from the daemon and has not been looked at yet: bounded, and never in the way.
+//! What has come from the daemon and has not been taken in yet: one queue, bounded, and never in the
+//! way.
 //!
 //! The window may stand still for minutes while it is hidden. So the newest of everything is kept,
 //! and of paths as many as fit; what is pushed out is counted.
 
-use std::collections::{BTreeMap, VecDeque};
-use std::sync::{Mutex, PoisonError};
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use common::{
-    FilmTile, FilterReply, FocusPath, FocusStep, Gap, Notice, PathBatch, Statistics, Welcome,
-};
-use proto::{ReceivedScene, TracerEvent};
+use common::{FilmTile, FocusPath, Gap, Notice, PathBatch, Statistics, TracerEvent};
+use proto::ReceivedScene;
 
+use super::backlog::Backlog;
 use crate::source::status::LinkState;
 
-/// Bytes of batches that may wait.
-const BATCH_BYTES: usize = 16 << 20;
 /// Bytes of film tiles that may wait: a film of eight megapixels.
 const FILM_BYTES: usize = 96 << 20;
-
 /// Bytes of the explorer's steps that may wait.
 const FOCUS_BYTES: usize = 8 << 20;
 /// Notices that may wait.
 const NOTICES: usize = 256;
 
-/// What comes in the focus lane, in its order.
+/// Something that has come.
 #[derive(Clone, Debug, PartialEq)]
-pub enum FocusNews {
-    /// The explorer's current path.
-    Path(FocusPath),
-    /// A step.
-    Step(FocusStep),
-    /// So many steps are missing here.
-    Gap(u64),
+pub enum Arrival {
+    /// How the connection is now.
+    Link(LinkState),
+    /// What the tracer said, but for paths.
+    Said(TracerEvent),
+    /// The scene.
+    Scene(Box<ReceivedScene>),
+    /// How long the daemon took to answer a question, way and back.
+    Latency(Duration),
+}
+
+impl Arrival {
+    /// True for what is worth a picture of its own.
+    fn is_news(&self) -> bool {
+        !matches!(self, Self::Latency(_))
+    }
+
+    /// True where `old`, which nobody has looked at yet, is void now.
+    fn makes_void(&self, old: &Self) -> bool {
+        use TracerEvent as Event;
+        match (self, old) {
+            // How the connection is belongs to the connection, not to the session.
+            (Self::Said(Event::Welcome(_)), old) => !matches!(old, Self::Link(_)),
+            (Self::Link(_), Self::Link(_))
+            | (Self::Scene(_), Self::Scene(_))
+            | (Self::Latency(_), Self::Latency(_))
+            | (Self::Said(Event::Statistics(_)), Self::Said(Event::Statistics(_)))
+            | (Self::Said(Event::FilterReply(_)), Self::Said(Event::FilterReply(_))) => true,
+            (Self::Said(Event::Film(new)), Self::Said(Event::Film(old)))
+            | (Self::Said(Event::ExplorerFilm(new)), Self::Said(Event::ExplorerFilm(old))) => {
+                let other_size = (new.width, new.height) != (old.width, old.height);
+                other_size || new.first_row == old.first_row
+            }
+            (Self::Said(Event::Notice(new)), Self::Said(Event::Notice(old))) => new.makes_void(old),
+            _ => false,
+        }
+    }
+
+    fn notice(&self) -> Option<&Notice> {
+        match self {
+            Self::Said(TracerEvent::Notice(notice)) => Some(notice),
+            _ => None,
+        }
+    }
+
+    /// Bytes of a film's tile.
+    fn film_bytes(&self) -> usize {
+        let bytes = |tile: &FilmTile| size_of_val(tile.rgb.as_slice());
+        match self {
+            Self::Said(TracerEvent::Film(tile) | TracerEvent::ExplorerFilm(tile)) => bytes(tile),
+            _ => 0,
+        }
+    }
+
+    /// What the explorer did, if this tells of it.
+    fn focus(&self) -> Option<&TracerEvent> {
+        match self {
+            Self::Said(event) => match event {
+                TracerEvent::FocusPath(_)
+                | TracerEvent::FocusStep(_)
+                | TracerEvent::FocusGap(_) => Some(event),
+                _ => None,
+            },
+            Self::Link(_) | Self::Scene(_) | Self::Latency(_) => None,
+        }
+    }
 }
 
 /// Everything that waits.
 #[derive(Debug, Default)]
-pub struct Delivery {
-    /// How the connection is now, if that changed.
-    pub state: Option<LinkState>,
-    /// The welcome of the newest session; it makes everything before it void.
-    pub welcome: Option<Welcome>,
-    /// The scene, if it came.
-    pub scene: Option<ReceivedScene>,
-    /// The newest statistics.
-    pub statistics: Option<Statistics>,
-    /// Paths in the order in which they came.
-    pub batches: VecDeque<PathBatch>,
-    /// The newest tile for each first row.
-    pub film: BTreeMap<u32, FilmTile>,
-    /// What was lost on the way, here or at the daemon.
-    pub gap: Gap,
-    /// How often something was lost.
-    pub gaps: u64,
-    /// The explorer's steps.
-    pub focus: VecDeque<FocusNews>,
-    /// Bytes that `focus` takes, about.
-    pub focus_bytes: usize,
-    /// The newest rows of the explorer's film for each first row.
-    pub explorer_film: BTreeMap<u32, FilmTile>,
-    /// Who steers, and what.
-    pub notices: VecDeque<Notice>,
-    /// The answer to the newest filter.
-    pub filter: Option<FilterReply>,
-    /// How long the daemon took to answer a question last, way and back.
-    pub latency: Option<Duration>,
+struct Waiting {
+    arrivals: VecDeque<Arrival>,
+    /// Bytes of what is told of the explorer, about.
+    focus_bytes: usize,
+    paths: Backlog,
+    /// Paths have come since somebody looked last.
+    has_new_paths: bool,
+    /// The statistics of this session that came last.
+    told: Option<Arc<Statistics>>,
 }
 
-impl Delivery {
-    /// True when nothing was delivered that is worth a picture of its own.
-    pub fn is_empty(&self) -> bool {
-        let quiet = self.state.is_none() && self.welcome.is_none() && self.scene.is_none();
-        quiet
-            && self.statistics.is_none()
-            && self.batches.is_empty()
-            && self.film.is_empty()
-            && self.gaps == 0
-            && self.focus.is_empty()
-            && self.explorer_film.is_empty()
-            && self.notices.is_empty()
-            && self.filter.is_none()
-    }
-
-    fn push(&mut self, event: TracerEvent) {
-        match event {
-            TracerEvent::Welcome(welcome) => {
-                // The state belongs to the connection, not to the session.
-                let state = self.state.take();
-                *self = Self { state, welcome: Some(welcome), ..Self::default() };
+impl Waiting {
+    /// Puts in what is not paths. It makes room for itself among its like.
+    fn push(&mut self, arrival: Arrival) {
+        self.arrivals.retain(|old| !arrival.makes_void(old));
+        if arrival.notice().is_some() {
+            self.bound_notices();
+        }
+        if arrival.film_bytes() > 0 {
+            let held: usize = self.arrivals.iter().map(Arrival::film_bytes).sum();
+            if held + arrival.film_bytes() > FILM_BYTES {
+                self.arrivals.retain(|old| old.film_bytes() == 0);
             }
-            TracerEvent::Paths(batch) => self.push_batch(batch),
-            TracerEvent::Film(tile) => push_tile(&mut self.film, tile),
-            TracerEvent::ExplorerFilm(tile) => push_tile(&mut self.explorer_film, tile),
-            TracerEvent::Statistics(statistics) => self.statistics = Some(statistics),
-            TracerEvent::Gap(gap) => self.lose(gap),
-            TracerEvent::FilterReply(reply) => self.filter = Some(reply),
-            TracerEvent::FocusPath(path) => self.push_focus(FocusNews::Path(path)),
-            TracerEvent::FocusStep(step) => self.push_focus(FocusNews::Step(step)),
-            TracerEvent::FocusGap(steps) => self.push_focus(FocusNews::Gap(steps)),
-            TracerEvent::Notice(notice) => self.push_notice(notice),
-            TracerEvent::SnapshotEnd | TracerEvent::Goodbye(_) | TracerEvent::Unknown => {}
+        }
+        if let Some(event) = arrival.focus() {
+            if self.focus_bytes > FOCUS_BYTES {
+                self.skip_focus();
+            }
+            self.focus_bytes += event.byte_len();
+        }
+        if matches!(arrival, Arrival::Said(TracerEvent::Welcome(_))) {
+            (self.focus_bytes, self.told) = (0, None);
+            self.paths.clear();
+        }
+        self.arrivals.push_back(arrival);
+    }
+
+    fn bound_notices(&mut self) {
+        let notices = self.arrivals.iter().filter(|old| old.notice().is_some()).count();
+        let oldest = self.arrivals.iter().position(|old| old.notice().is_some());
+        if let Some(oldest) = oldest.filter(|_| notices >= NOTICES) {
+            self.arrivals.remove(oldest);
         }
     }
 
-    fn push_batch(&mut self, batch: PathBatch) {
-        self.batches.push_back(batch);
-        let mut bytes: usize = self.batches.iter().map(PathBatch::byte_len).sum();
-        while bytes > BATCH_BYTES && self.batches.len() > 1 {
-            let Some(oldest) = self.batches.pop_front() else { return };
-            bytes -= oldest.byte_len();
-            self.lose(Gap {
-                batches: 1,
-                paths: oldest.len() as u64,
-                bytes: oldest.byte_len() as u64,
-            });
-        }
+    /// All that is told of the explorer makes room. The path after it is made of the last one that is
+    /// known and what follows it; the steps to come need it.
+    fn skip_focus(&mut self) {
+        let focus = self.arrivals.iter().filter_map(Arrival::focus);
+        let steps = focus.clone().map(TracerEvent::focus_steps).fold(0, u64::saturating_add);
+        let path = focus.fold(None, |path: Option<FocusPath>, event| match event {
+            TracerEvent::FocusPath(path) => Some(FocusPath::clone(path)),
+            TracerEvent::FocusStep(step) => path?.after(step),
+            _ => None,
+        });
+        self.arrivals.retain(|old| old.focus().is_none());
+        let path = path.map(|path| TracerEvent::FocusPath(path.into()));
+        self.focus_bytes = path.as_ref().map_or(0, TracerEvent::byte_len);
+        let skipped = [Some(TracerEvent::FocusGap(steps)), path];
+        self.arrivals.extend(skipped.into_iter().flatten().map(Arrival::Said));
     }
 
-    /// Puts in a step. Where too many wait, all of them make room, and the next path begins anew.
-    fn push_focus(&mut self, news: FocusNews) {
-        if self.focus_bytes > FOCUS_BYTES {
-            let lost = |news: &FocusNews| match news {
-                FocusNews::Path(_) => 0,
-                FocusNews::Step(_) => 1,
-                FocusNews::Gap(steps) => *steps,
-            };
-            let steps = self.focus.iter().map(lost).fold(0, u64::saturating_add);
-            // The path after the lost steps is made of the last one that is known and what follows
-            // it; the steps after a gap need it.
-            let path = replay(&self.focus);
-            self.focus = VecDeque::from([FocusNews::Gap(steps)]);
-            self.focus.extend(path.map(FocusNews::Path));
-            self.focus_bytes = self.focus.iter().map(size).sum();
-        }
-        self.focus_bytes += size(&news);
-        self.focus.push_back(news);
-    }
-
-    /// Puts in a notice. A state replaces the one before it that nobody has looked at.
-    fn push_notice(&mut self, notice: Notice) {
-        self.notices.retain(|old| !notice.makes_void(old));
-        if self.notices.len() >= NOTICES {
-            self.notices.pop_front();
-        }
-        self.notices.push_back(notice);
-    }
-
+    /// Counts what never came, with what is counted already.
     fn lose(&mut self, gap: Gap) {
-        self.gaps += 1;
-        self.gap.batches = self.gap.batches.saturating_add(gap.batches);
-        self.gap.paths = self.gap.paths.saturating_add(gap.paths);
-        self.gap.bytes = self.gap.bytes.saturating_add(gap.bytes);
+        let waiting = self.arrivals.iter_mut().find_map(|old| match old {
+            Arrival::Said(TracerEvent::Gap(gap)) => Some(gap),
+            _ => None,
+        });
+        match waiting {
+            Some(waiting) => {
+                waiting.batches = waiting.batches.saturating_add(gap.batches);
+                waiting.paths = waiting.paths.saturating_add(gap.paths);
+                waiting.bytes = waiting.bytes.saturating_add(gap.bytes);
+            }
+            None => self.arrivals.push_back(Arrival::Said(TracerEvent::Gap(gap))),
+        }
+    }
+
+    /// True for statistics that say nothing new: a daemon whose chains rest says the same again and
+    /// again.
+    fn is_known(&self, new: &Statistics) -> bool {
+        // Memory wavers by itself.
+        self.told.as_ref().is_some_and(|old| {
+            Statistics { memory_bytes: old.memory_bytes, ..new.clone() } == **old
+        })
     }
 }
 
-/// The newest tile for each first row.
-fn push_tile(film: &mut BTreeMap<u32, FilmTile>, tile: FilmTile) {
-    let bytes = |tile: &FilmTile| tile.rgb.len() * size_of::<f32>();
-    let held: usize = film.values().map(bytes).sum();
-    let other_size = |t: &FilmTile| (t.width, t.height) != (tile.width, tile.height);
-    if held + bytes(&tile) > FILM_BYTES || film.values().any(other_size) {
-        film.clear();
-    }
-    film.insert(tile.first_row, tile);
-}
-
-/// The explorer's current path at the end of its news; `None` where that is not known.
-fn replay(news: &VecDeque<FocusNews>) -> Option<FocusPath> {
-    news.iter().fold(None, |path: Option<FocusPath>, news| match news {
-        FocusNews::Path(path) => Some(path.clone()),
-        FocusNews::Step(step) => path?.after(step),
-        FocusNews::Gap(_) => None,
-    })
-}
-
-fn size(news: &FocusNews) -> usize {
-    match news {
-        FocusNews::Path(path) => path.byte_len(),
-        FocusNews::Step(step) => step.byte_len(),
-        FocusNews::Gap(_) => size_of::<FocusNews>(),
-    }
-}
-
-/// The box between the network's thread and the window's.
+/// The queue between the network's thread and the window's.
 #[derive(Debug, Default)]
 pub struct Inbox {
-    held: Mutex<Delivery>,
-    /// The statistics of this session that came last.
-    told: Mutex<Option<Statistics>>,
+    waiting: Mutex<Waiting>,
 }
 
 impl Inbox {
-    /// Puts in what the tracer said. False where that is nothing to show: a daemon whose chains rest
-    /// says the same again and again.
-    pub fn push(&self, event: TracerEvent) -> bool {
-        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        match &event {
-            TracerEvent::SnapshotEnd | TracerEvent::Goodbye(_) | TracerEvent::Unknown => {
-                return false;
-            }
-            TracerEvent::Welcome(_) => *told = None,
-            TracerEvent::Statistics(new) => {
-                // Memory wavers by itself.
-                let same = |old: &Statistics| {
-                    Statistics { memory_bytes: old.memory_bytes, ..new.clone() } == *old
-                };
-                if told.as_ref().is_some_and(same) {
+    /// Puts in what the tracer said. False where that is nothing to show.
+    pub fn put(&self, event: TracerEvent) -> bool {
+        self.edit(|waiting| {
+            match event {
+                TracerEvent::SnapshotEnd | TracerEvent::Goodbye(_) | TracerEvent::Unknown => {
                     return false;
                 }
-                *told = Some(new.clone());
+                TracerEvent::Statistics(new) if waiting.is_known(&new) => return false,
+                TracerEvent::Statistics(new) => {
+                    waiting.told = Some(Arc::clone(&new));
+                    waiting.push(Arrival::Said(TracerEvent::Statistics(new)));
+                }
+                TracerEvent::Paths(batch) => {
+                    waiting.has_new_paths = true;
+                    if let Some(lost) = waiting.paths.push(batch) {
+                        waiting.lose(lost);
+                    }
+                }
+                TracerEvent::Gap(gap) => waiting.lose(gap),
+                event => waiting.push(Arrival::Said(event)),
             }
-            _ => {}
-        }
-        drop(told);
-        self.edit(|held| held.push(event));
-        true
+            true
+        })
     }
 
-    /// Puts in a scene.
-    pub fn push_scene(&self, scene: ReceivedScene) {
-        self.edit(|held| held.scene = Some(scene));
+    /// Puts in what did not come from the tracer's mouth.
+    pub fn push(&self, arrival: Arrival) {
+        self.edit(|waiting| match arrival {
+            Arrival::Said(TracerEvent::Gap(gap)) => waiting.lose(gap),
+            arrival => waiting.push(arrival),
+        });
     }
 
-    /// Puts in how long the daemon took to answer.
-    pub fn push_latency(&self, latency: Duration) {
-        self.edit(|held| held.latency = Some(latency));
+    /// How many paths may wait; the oldest batches go, but never all.
+    pub fn set_limit(&self, paths: usize) {
+        self.edit(|waiting| {
+            if let Some(lost) = waiting.paths.set_limit(paths) {
+                waiting.lose(lost);
+            }
+        });
     }
 
-    /// Puts in how the connection is.
-    pub fn push_state(&self, state: LinkState) {
-        self.edit(|held| held.state = Some(state));
-    }
-
-    /// True when anything is in it.
+    /// True when anything is in it that is worth a picture.
     pub fn has_news(&self) -> bool {
-        self.edit(|held| !held.is_empty())
+        self.edit(|waiting| waiting.has_new_paths || waiting.arrivals.iter().any(Arrival::is_news))
     }
 
-    /// Takes everything out.
-    pub fn take(&self) -> Delivery {
-        self.edit(std::mem::take)
+    /// Takes out everything but the paths.
+    pub fn take_arrivals(&self) -> VecDeque<Arrival> {
+        self.edit(|waiting| {
+            (waiting.focus_bytes, waiting.has_new_paths) = (0, false);
+            std::mem::take(&mut waiting.arrivals)
+        })
     }
 
-    fn edit<T>(&self, edit: impl FnOnce(&mut Delivery) -> T) -> T {
+    /// The oldest batch, once `threshold` paths have waited for it.
+    pub fn next_batch(&self, threshold: usize) -> Option<Arc<PathBatch>> {
+        self.edit(|waiting| waiting.paths.next(threshold))
+    }
+
+    /// True when paths wait that are to be taken in now.
+    pub fn has_paths(&self, threshold: usize) -> bool {
+        self.edit(|waiting| waiting.paths.is_due(threshold))
+    }
+
+    /// Paths that wait.
+    pub fn paths(&self) -> usize {
+        self.edit(|waiting| waiting.paths.len())
+    }
+
+    fn edit<T>(&self, edit: impl FnOnce(&mut Waiting) -> T) -> T {
         // A panic elsewhere leaves the box consistent: every edit is complete or has not begun.
-        edit(&mut self.held.lock().unwrap_or_else(PoisonError::into_inner))
+        edit(&mut self.waiting.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use common::{BatchBuilder, BatchLimits, Event, PathHeader, VertexKind, VertexRecord};
+    use common::{
+        BatchBuilder, BatchLimits, Event, FocusStep, PathHeader, VertexKind, VertexRecord,
+    };
 
     use super::*;
 
@@ -277,38 +294,44 @@ mod tests {
         FilmTile { sequence: 0, width, height: 64, first_row, steps: 0, rgb }
     }
 
+    /// What is told of losses.
+    fn gap(arrivals: &VecDeque<Arrival>) -> Option<Gap> {
+        arrivals.iter().find_map(|arrival| match arrival {
+            Arrival::Said(TracerEvent::Gap(gap)) => Some(*gap),
+            _ => None,
+        })
+    }
+
     #[test]
     fn the_oldest_batches_go_and_are_counted() {
         let inbox = Inbox::default();
         let large = batch(20_000);
         for sequence in 0..30 {
-            inbox.push(TracerEvent::Paths(large.clone().with_sequence(sequence)));
+            inbox.put(TracerEvent::Paths(Arc::new(large.clone().with_sequence(sequence))));
         }
-        let delivery = inbox.take();
-        let bytes: usize = delivery.batches.iter().map(PathBatch::byte_len).sum();
-        assert!(bytes <= BATCH_BYTES, "{bytes} bytes wait");
-        assert_eq!(
-            delivery.batches.back().map(PathBatch::sequence),
-            Some(29),
-            "the newest is kept"
-        );
-        let kept = delivery.batches.len() as u64;
-        assert_eq!((delivery.gap.batches, delivery.gaps), (30 - kept, 30 - kept), "losses");
-        assert_eq!(delivery.gap.paths, (30 - kept) * 20_000, "lost paths");
-        assert!(inbox.take().batches.is_empty(), "taken once");
+        let kept: Vec<_> = std::iter::from_fn(|| inbox.next_batch(0)).collect();
+        let bytes: usize = kept.iter().map(|batch| batch.byte_len()).sum();
+        assert!(bytes <= 16 << 20, "{bytes} bytes wait");
+        assert_eq!(kept.last().map(|batch| batch.sequence()), Some(29), "the newest is kept");
+        let lost = 30 - kept.len() as u64;
+        let arrivals = inbox.take_arrivals();
+        assert_eq!(gap(&arrivals).map(|gap| gap.batches), Some(lost), "losses");
+        assert_eq!(gap(&arrivals).map(|gap| gap.paths), Some(lost * 20_000), "lost paths");
+        assert!(inbox.take_arrivals().is_empty() && inbox.paths() == 0, "taken once");
     }
 
     #[test]
     fn only_the_newest_tile_of_a_row_waits() {
         let inbox = Inbox::default();
         for _ in 0..100 {
-            inbox.push(TracerEvent::Film(tile(0, 32, 8)));
-            inbox.push(TracerEvent::Film(tile(32, 32, 8)));
+            inbox.put(TracerEvent::Film(tile(0, 32, 8)));
+            inbox.put(TracerEvent::ExplorerFilm(tile(0, 32, 8)));
+            inbox.put(TracerEvent::Film(tile(32, 32, 8)));
         }
-        assert_eq!(inbox.take().film.len(), 2, "two halves");
-        inbox.push(TracerEvent::Film(tile(0, 32, 8)));
-        inbox.push(TracerEvent::Film(tile(32, 32, 16)));
-        assert_eq!(inbox.take().film.len(), 1, "a film of another size replaces the first");
+        assert_eq!(inbox.take_arrivals().len(), 3, "two halves, and the explorer's");
+        inbox.put(TracerEvent::Film(tile(0, 32, 8)));
+        inbox.put(TracerEvent::Film(tile(32, 32, 16)));
+        assert_eq!(inbox.take_arrivals().len(), 1, "a film of another size replaces the first");
     }
 
     #[test]
@@ -317,22 +340,80 @@ mod tests {
         let said = |seconds: f64, memory_bytes| {
             let statistics =
                 Statistics { elapsed_seconds: seconds, memory_bytes, ..Statistics::default() };
-            inbox.push(TracerEvent::Statistics(statistics))
+            inbox.put(TracerEvent::Statistics(Arc::new(statistics)))
         };
         assert_eq!([said(1.0, 5), said(1.0, 7), said(2.0, 7)], [true, false, true], "as they come");
-        assert!(!inbox.push(TracerEvent::Unknown), "nothing that is known");
-        assert_eq!(inbox.take().statistics.map(|s| s.elapsed_seconds), Some(2.0), "the newest");
+        assert!(!inbox.put(TracerEvent::Unknown), "nothing that is known");
+        let mut arrivals = inbox.take_arrivals();
+        assert!(
+            matches!(arrivals.make_contiguous(), [Arrival::Said(TracerEvent::Statistics(s))]
+                if s.elapsed_seconds == 2.0),
+            "the newest: {arrivals:?}"
+        );
         assert!(!inbox.has_news(), "taken");
     }
 
     #[test]
     fn gaps_add_up() {
         let inbox = Inbox::default();
-        let gap = Gap { batches: 1, paths: u64::MAX, bytes: 3 };
-        inbox.push(TracerEvent::Gap(gap));
-        inbox.push(TracerEvent::Gap(gap));
-        let delivery = inbox.take();
-        assert_eq!((delivery.gaps, delivery.gap.batches), (2, 2), "two gaps");
-        assert_eq!(delivery.gap.paths, u64::MAX, "absurd counts do not overflow");
+        let lost = Gap { batches: 1, paths: u64::MAX, bytes: 3 };
+        inbox.put(TracerEvent::Gap(lost));
+        inbox.put(TracerEvent::Gap(lost));
+        let told = gap(&inbox.take_arrivals()).expect("a gap");
+        assert_eq!(told.batches, 2, "two gaps");
+        assert_eq!(told.paths, u64::MAX, "absurd counts do not overflow");
+    }
+
+    #[test]
+    fn a_welcome_makes_everything_before_it_void() {
+        let inbox = Inbox::default();
+        inbox.push(Arrival::Link(LinkState::Connected));
+        inbox.put(TracerEvent::Paths(Arc::new(batch(3))));
+        inbox.put(TracerEvent::Film(tile(0, 32, 8)));
+        inbox.put(TracerEvent::FocusGap(5));
+        let welcome = Box::new(crate::synthetic::welcome());
+        inbox.put(TracerEvent::Welcome(welcome.clone()));
+        assert_eq!(inbox.paths(), 0, "paths are of another session");
+        let expected =
+            [Arrival::Link(LinkState::Connected), Arrival::Said(TracerEvent::Welcome(welcome))];
+        assert_eq!(inbox.take_arrivals(), expected, "the connection is the same one");
+    }
+
+    #[test]
+    fn steps_that_find_no_room_are_told_and_the_walk_goes_on() {
+        let inbox = Inbox::default();
+        let batch = batch(1);
+        let vertices = batch.reader().next().expect("a path").vertices.to_vec();
+        let path = FocusPath { vertices, next: 1, ..FocusPath::default() };
+        inbox.put(TracerEvent::FocusPath(Arc::new(path.clone())));
+        let mut expected = path;
+        let mut pushed = 0;
+        while pushed < 60_000 {
+            pushed += 1;
+            let step = FocusStep {
+                number: expected.next,
+                length: expected.vertices.len(),
+                kept_light: 2,
+                kept_eye: 2,
+                ..FocusStep::default()
+            };
+            expected = expected.after(&step).expect("it follows");
+            inbox.put(TracerEvent::FocusStep(Arc::new(step)));
+        }
+        let (mut told, mut bytes) = (0, 0);
+        let mut path: Option<FocusPath> = None;
+        for arrival in inbox.take_arrivals() {
+            let Arrival::Said(event) = arrival else { continue };
+            told += event.focus_steps();
+            bytes += event.byte_len();
+            path = match event {
+                TracerEvent::FocusPath(path) => Some(FocusPath::clone(&path)),
+                TracerEvent::FocusStep(step) => path.and_then(|path| path.after(&step)),
+                _ => None,
+            };
+        }
+        assert!(bytes <= FOCUS_BYTES + 4096, "{bytes} bytes wait");
+        assert_eq!(told, pushed, "every step is told of, or told as missing");
+        assert_eq!(path, Some(expected), "and the walk is where it is");
     }
 }

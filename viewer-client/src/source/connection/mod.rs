@@ -1,26 +1,30 @@
 //! The connection to a daemon: a thread of its own that connects, listens, and connects again.
 //!
-//! The window never waits for the network: it takes what lies in the [`Inbox`].
+//! The window never waits for the network: it takes in what lies in the [`Inbox`].
 
+mod backlog;
 mod backoff;
+mod error;
 mod inbox;
 mod peer;
+mod probe;
 mod session;
 mod tls;
 
 pub use backoff::delay;
-pub use inbox::{Delivery, FocusNews, Inbox};
+pub use error::SessionError;
+pub use inbox::{Arrival, Inbox};
 pub use peer::{Bearer, Peer, Trust};
 pub use proto::Fingerprint;
-pub use session::{Greeting, SceneFetcher, Session, SessionError, own_name};
+pub use session::{Greeting, SceneFetcher, Session, own_name};
 
 use std::fmt;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use common::{Appearance, Order, PathId, Role};
-use proto::{NumberedOrder, ReceivedScene, TracerEvent, ViewerEvent, WantedFilter};
+use common::{Appearance, FilterText, Order, PathId, Role, TracerEvent};
+use proto::{NumberedOrder, ReceivedScene, ViewerEvent, WantedFilter};
 use tokio::sync::{Notify, mpsc};
 use tokio::task::JoinSet;
 use tokio::time::MissedTickBehavior;
@@ -81,7 +85,7 @@ impl Link {
         let shutdown = CancellationToken::new();
         let (outbox, orders) = mpsc::channel(OUTBOX);
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-        let keeper = Keeper {
+        let connection = Connection {
             peer: peer.clone(),
             inbox: Arc::clone(&inbox),
             retry_now: Arc::clone(&retry_now),
@@ -98,7 +102,7 @@ impl Link {
         };
         let thread = std::thread::Builder::new()
             .name("connection".to_owned())
-            .spawn(move || runtime.block_on(keeper.run()))?;
+            .spawn(move || runtime.block_on(connection.run()))?;
         Ok(Self { peer, inbox, retry_now, outbox, shutdown, thread: Some(thread) })
     }
 
@@ -107,14 +111,9 @@ impl Link {
         &self.peer.address
     }
 
-    /// True when something came that is not taken yet.
-    pub fn has_news(&self) -> bool {
-        self.inbox.has_news()
-    }
-
-    /// Takes everything that came.
-    pub fn take(&self) -> Delivery {
-        self.inbox.take()
+    /// Where everything that comes waits to be taken in.
+    pub fn inbox(&self) -> &Arc<Inbox> {
+        &self.inbox
     }
 
     /// Sends an order; the daemon replies to it under the number `request`. False where it cannot be
@@ -124,9 +123,10 @@ impl Link {
     }
 
     /// Sets which paths come; blank for all. The daemon answers with a reply of the same `revision`,
-    /// which must be at least 1 and grow. The filter is set again when the connection is.
-    pub fn set_filter(&self, revision: u32, text: String) -> bool {
-        self.say(ViewerEvent::SetFilter(WantedFilter { revision, text }))
+    /// which must be at least 1 and grow. It must be set again when the connection is: a daemon that
+    /// comes back may have a scene that cannot read it.
+    pub fn set_filter(&self, revision: u32, filter: FilterText) -> bool {
+        self.say(ViewerEvent::SetFilter(WantedFilter { revision, filter }))
     }
 
     /// Asks for every step of the explorer, or for no more of them; also when the connection is made
@@ -167,7 +167,7 @@ impl Drop for Link {
 }
 
 /// What the connection's thread owns.
-struct Keeper {
+struct Connection {
     peer: Peer,
     inbox: Arc<Inbox>,
     retry_now: Arc<Notify>,
@@ -180,7 +180,7 @@ struct Keeper {
     greeting: Greeting,
 }
 
-impl Keeper {
+impl Connection {
     async fn run(mut self) {
         let shutdown = self.shutdown.clone();
         let mut failures = 0;
@@ -213,10 +213,8 @@ impl Keeper {
 
     /// Keeps in mind what the next session begins with.
     fn remember(&mut self, event: &ViewerEvent) {
-        match event {
-            ViewerEvent::SetFilter(filter) => self.greeting.filter = Some(filter.clone()),
-            ViewerEvent::SetFocus(on) => self.greeting.focus = *on,
-            _ => {}
+        if let ViewerEvent::SetFocus(on) = event {
+            self.greeting.focus = *on;
         }
     }
 
@@ -250,7 +248,7 @@ impl Keeper {
                 Some(answered) = asking.join_next() => {
                     // Shown with what comes next: not worth a picture of its own.
                     if let Ok(Ok(latency)) = answered {
-                        self.inbox.push_latency(latency);
+                        self.inbox.push(Arrival::Latency(latency));
                     }
                 }
                 Some(event) = self.orders.recv() => {
@@ -269,7 +267,7 @@ impl Keeper {
                             self.set_state(LinkState::Connected);
                         }
                         let haste = Haste::of(&event);
-                        if self.inbox.push(event) {
+                        if self.inbox.put(event) {
                             (self.waker)(haste);
                         }
                     }
@@ -282,12 +280,12 @@ impl Keeper {
     fn deliver_scene(&mut self, scene: Option<ReceivedScene>) {
         let Some(scene) = scene else { return };
         self.held_hash.clone_from(&scene.hash);
-        self.inbox.push_scene(scene);
+        self.inbox.push(Arrival::Scene(Box::new(scene)));
         (self.waker)(Haste::Now);
     }
 
     fn set_state(&self, state: LinkState) {
-        self.inbox.push_state(state);
+        self.inbox.push(Arrival::Link(state));
         (self.waker)(Haste::Now);
     }
 }

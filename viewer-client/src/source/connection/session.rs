@@ -2,26 +2,29 @@
 
 use std::time::Duration;
 
-use common::Role;
+use common::{Role, TracerEvent};
 use proto::v1::tracer_client::TracerClient;
 use proto::{
-    Hello, MAX_MESSAGE_BYTES, ProtocolVersion, ReceivedScene, SceneAssembler, TracerEvent,
-    ViewerEvent, WantedFilter, WireError, v1,
+    Hello, MAX_MESSAGE_BYTES, ProtocolVersion, ReceivedScene, SceneAssembler, ViewerEvent,
+    WantedFilter, v1,
 };
-use thiserror::Error;
 use tokio::sync::mpsc;
 use tokio_stream::wrappers::ReceiverStream;
 use tonic::service::interceptor::InterceptedService;
 use tonic::transport::{Channel, Endpoint};
-use tonic::{Code, Status, Streaming};
+use tonic::{Code, Streaming};
 
-use super::peer::{Bearer, Peer};
+use super::error::{Broken, SessionError};
+use super::peer::{Bearer, Peer, Trust};
+use super::probe::{self, Found};
 use super::tls;
 
 /// Window of a stream and of a connection; a small one holds back batches of 64 KiB.
 const WINDOW_BYTES: u32 = 4 << 20;
 /// A daemon that takes longer to answer is not there.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(5);
+/// A daemon greets whoever says hello within moments.
+const GREETING_TIMEOUT: Duration = Duration::from_secs(10);
 /// A silent daemon is asked this often whether it lives.
 const PING_INTERVAL: Duration = Duration::from_secs(10);
 /// And given up after this long without an answer.
@@ -32,58 +35,6 @@ const FAREWELL: Duration = Duration::from_millis(300);
 const MAX_NAME: usize = 256;
 /// Messages from this viewer that may wait to be sent.
 const OUTBOX: usize = 32;
-
-/// Why a session could not begin or came to an end.
-#[derive(Debug, Error)]
-pub enum SessionError {
-    /// The address is none.
-    #[error("`{0}` is not an address; write HOST:PORT, such as 127.0.0.1:50061")]
-    BadAddress(String),
-    /// The certificate is not the right one, or there is no TLS.
-    #[error("no trusted connection to {address}: {reason}")]
-    Untrusted {
-        /// HOST:PORT.
-        address: String,
-        /// What is wrong.
-        reason: String,
-    },
-    /// A token must not be seen by others.
-    #[error(
-        "{0} is another machine, and the token would travel unencrypted: trust the daemon's \
-         certificate with --fingerprint or --ca-cert"
-    )]
-    ExposedToken(String),
-    /// Something listens, but does not speak as expected.
-    #[error(
-        "{0} broke off the greeting: if the daemon encrypts, trust its certificate with \
-         --fingerprint or --ca-cert"
-    )]
-    NoGreeting(String),
-    /// Nobody listens.
-    #[error("no daemon answers at {0}")]
-    Unreachable(String),
-    /// The daemon refused or broke off.
-    #[error("{0}")]
-    Refused(String),
-    /// The daemon said goodbye.
-    #[error("the daemon said goodbye: {0}")]
-    Goodbye(String),
-    /// The stream ended without a goodbye.
-    #[error("the connection was lost")]
-    Lost,
-    /// A message that makes no sense.
-    #[error("the daemon sent something unreadable: {0}")]
-    Unreadable(#[from] WireError),
-}
-
-impl From<Status> for SessionError {
-    fn from(status: Status) -> Self {
-        match status.code() {
-            Code::Unavailable | Code::Cancelled | Code::Unknown => Self::Lost,
-            _ => Self::Refused(format!("the daemon refused: {}", status.message())),
-        }
-    }
-}
 
 /// A client that shows its token.
 type Client = TracerClient<InterceptedService<Channel, Bearer>>;
@@ -124,6 +75,16 @@ impl Session {
         if peer.exposes_token() {
             return Err(SessionError::ExposedToken(peer.address.clone()));
         }
+        let greeted = tokio::time::timeout(GREETING_TIMEOUT, Self::greet(peer, greeting));
+        match greeted.await {
+            Ok(Ok(session)) => Ok(session),
+            Ok(Err(Broken::Told(error))) => Err(error),
+            Ok(Err(Broken::Off)) | Err(_) => Err(explain(peer, None).await),
+            Ok(Err(Broken::Untrusted(reason))) => Err(explain(peer, Some(reason)).await),
+        }
+    }
+
+    async fn greet(peer: &Peer, greeting: Greeting) -> Result<Self, Broken> {
         let tune = |endpoint: Endpoint| {
             endpoint
                 .connect_timeout(CONNECT_TIMEOUT)
@@ -152,10 +113,12 @@ impl Session {
         let answer = client.watch(ReceiverStream::new(outbox)).await;
         let incoming = answer.map_err(|status| match status.code() {
             // What a peer that speaks TLS, or anything but gRPC, makes of a greeting.
-            Code::Internal | Code::Unavailable | Code::Cancelled | Code::Unknown => {
-                SessionError::NoGreeting(peer.address.clone())
-            }
-            _ => SessionError::from(status),
+            Code::Internal | Code::Unavailable | Code::Cancelled | Code::Unknown => Broken::Off,
+            Code::Unimplemented => Broken::Told(SessionError::Unreachable(format!(
+                "what answers at {} is no Lvis daemon; look at its address and port again",
+                peer.address
+            ))),
+            _ => Broken::Told(SessionError::from(status)),
         })?;
         let incoming = incoming.into_inner();
         Ok(Self { client, incoming, outgoing })
@@ -192,6 +155,47 @@ impl Session {
             tracing::debug!("the daemon did not answer the goodbye");
         }
     }
+}
+
+/// Why the greeting of `peer` broke off, by what is found at its address; `reason` is what the
+/// encryption says.
+async fn explain(peer: &Peer, reason: Option<String>) -> SessionError {
+    let address = peer.address.clone();
+    let wants_encryption = peer.trust != Trust::Plain;
+    let text = match (probe::look(&address).await, reason) {
+        (Found::Encrypted, Some(reason)) => {
+            return SessionError::Untrusted { address, reason };
+        }
+        (Found::NoWay(error), _) => {
+            format!("there is no way to {address}: {error}; look at the name, and at the network")
+        }
+        (Found::Nobody, _) => format!(
+            "nobody listens at {address}: start a daemon with `tracer-server serve --listen \
+             {address}`, or look at the port that it told"
+        ),
+        (Found::Silence, _) => {
+            format!("nothing answers at {address}: is the machine on, and does a firewall let it?")
+        }
+        (Found::Plain, _) if wants_encryption => format!(
+            "the daemon at {address} does not encrypt: connect without --fingerprint and --ca-cert, \
+             or have it started with --tls-self-signed"
+        ),
+        (Found::Encrypted, None) => format!(
+            "the daemon at {address} encrypts: give the fingerprint that it told when it started \
+             (--fingerprint), or its certificate (--ca-cert)"
+        ),
+        (Found::Plain, _) => {
+            format!("the daemon at {address} broke off the greeting; its log tells why")
+        }
+        (Found::Other(what), _) => {
+            format!("what answers at {address} is {what}, no daemon; look at the port again")
+        }
+        (Found::Closed, _) => format!(
+            "{address} hangs up at once: the daemon may have too many connections, or it is something \
+             else"
+        ),
+    };
+    SessionError::Unreachable(text)
 }
 
 /// Fetches the scene beside a running session.

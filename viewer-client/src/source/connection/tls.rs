@@ -20,8 +20,8 @@ use tokio_rustls::rustls::{
 };
 use tonic::transport::{Certificate, Channel, ClientTlsConfig, Endpoint};
 
+use super::error::{Broken, SessionError};
 use super::peer::{Peer, Trust};
-use super::session::SessionError;
 
 /// The protocol that gRPC speaks inside TLS.
 const HTTP2: &[u8] = b"h2";
@@ -30,20 +30,15 @@ const HTTP2: &[u8] = b"h2";
 pub(super) async fn connect(
     peer: &Peer,
     tune: impl FnOnce(Endpoint) -> Endpoint,
-) -> Result<Channel, SessionError> {
+) -> Result<Channel, Broken> {
+    let bad_address = || Broken::Told(SessionError::BadAddress(peer.address.clone()));
     let scheme = if matches!(peer.trust, Trust::Authority(_)) { "https" } else { "http" };
     let endpoint = Endpoint::from_shared(format!("{scheme}://{}", peer.address))
-        .map_err(|_invalid| SessionError::BadAddress(peer.address.clone()))?;
+        .map_err(|_invalid| bad_address())?;
     let endpoint = tune(endpoint);
-    let untrusted = |error: &dyn error::Error| SessionError::Untrusted {
-        address: peer.address.clone(),
-        reason: innermost(error),
-    };
+    let untrusted = |error: &dyn error::Error| Broken::Untrusted(innermost(error));
     match &peer.trust {
-        Trust::Plain => {
-            let unreachable = |_| SessionError::Unreachable(peer.address.clone());
-            endpoint.connect().await.map_err(unreachable)
-        }
+        Trust::Plain => endpoint.connect().await.map_err(|_unclear| Broken::Off),
         Trust::Authority(pem) => {
             let tls = ClientTlsConfig::new().ca_certificate(Certificate::from_pem(pem));
             let endpoint = endpoint.tls_config(tls).map_err(|error| untrusted(&error))?;
@@ -51,8 +46,8 @@ pub(super) async fn connect(
         }
         Trust::Pinned(fingerprint) => {
             let connector = pinned(*fingerprint).map_err(|error| untrusted(&error))?;
-            let name = ServerName::try_from(peer.host().to_owned())
-                .map_err(|_invalid| SessionError::BadAddress(peer.address.clone()))?;
+            let name = ServerName::try_from(peer.host().to_owned());
+            let name = name.map_err(|_invalid| bad_address())?;
             let address = peer.address.clone();
             let dial =
                 tower::service_fn(move |_| dial(address.clone(), name.clone(), connector.clone()));

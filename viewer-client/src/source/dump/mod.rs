@@ -10,8 +10,8 @@ mod record;
 mod stage;
 #[cfg(test)]
 pub(crate) mod tests;
+mod text;
 
-use std::io::{BufRead as _, BufReader, Read as _};
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
@@ -23,8 +23,6 @@ pub use stage::{Act, Stage};
 
 /// No file is larger.
 const LARGEST: u64 = 1 << 31;
-/// No line is longer, in bytes.
-const LONGEST_LINE: u64 = 1 << 20;
 
 /// Why a file is no dump of paths.
 #[derive(Debug, Error)]
@@ -35,7 +33,7 @@ pub enum DumpError {
     /// The file is too large.
     #[error("{0} is larger than 2 GiB; split it between two records")]
     TooLarge(PathBuf),
-    /// Something in a line is wrong.
+    /// Something in a line is wrong, and no record is left without it.
     #[error("{file}, line {line}: {problem}")]
     BadLine {
         /// The file.
@@ -187,28 +185,23 @@ pub struct Dump {
     pub warnings: Vec<String>,
 }
 
-/// Reads a file of paths.
+/// Reads a file of paths. A record in which something is wrong is left out, and told.
 pub fn read(file: &Path) -> Result<Dump, DumpError> {
     let unreadable = |error| DumpError::Unreadable(file.to_owned(), error);
     let opened = std::fs::File::open(file).map_err(unreadable)?;
     if opened.metadata().map_err(unreadable)?.len() > LARGEST {
         return Err(DumpError::TooLarge(file.to_owned()));
     }
-    let bad_line = |Fault { line, problem }| {
-        let file = file.to_owned();
-        DumpError::BadLine { file, line, problem }
-    };
     let mut parser = parse::Parser::default();
-    let mut source = BufReader::new(opened);
-    let mut bytes = Vec::new();
-    loop {
-        bytes.clear();
-        let mut line = source.by_ref().take(LONGEST_LINE);
-        if line.read_until(b'\n', &mut bytes).map_err(unreadable)? == 0 {
-            break;
-        }
-        parser.line(&String::from_utf8_lossy(&bytes)).map_err(bad_line)?;
+    let mut lines = text::Lines::new(opened).map_err(unreadable)?;
+    while let Some(line) = lines.next().map_err(unreadable)? {
+        parser.line(&line);
     }
-    let dump = parser.finish();
-    if dump.records.is_empty() { Err(DumpError::Empty(file.to_owned())) } else { Ok(dump) }
+    let (dump, fault) = parser.finish();
+    let file = file.to_owned();
+    match fault {
+        _ if !dump.records.is_empty() => Ok(dump),
+        Some(Fault { line, problem }) => Err(DumpError::BadLine { file, line, problem }),
+        None => Err(DumpError::Empty(file)),
+    }
 }

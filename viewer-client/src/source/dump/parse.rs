@@ -5,10 +5,13 @@ use glam::DVec3;
 
 use super::annotation::{self, Annotation};
 use super::record::{OpenVertex, Way};
+use super::text::Line;
 use super::{Dump, Fault, Numbers, Outcome, Record, Step};
 
 /// Formal vertices, one at each end.
 const FORMAL: usize = 2;
+/// Faults that are told one by one; the others are counted.
+const MOST_TOLD: usize = 10;
 
 /// What the lines so far have made.
 #[derive(Debug, Default)]
@@ -19,8 +22,18 @@ pub(super) struct Parser {
     chain: u32,
     /// A step whose record is still to come, and its line.
     due: Option<(Annotation, usize)>,
+    /// The lines that come belong to a record that is left out.
+    skips: bool,
+    /// The last path is not among the records: what the chain does there is left out, too.
+    is_lost: bool,
+    /// Steps that were left out with their paths.
+    lost_steps: usize,
     /// Lines that belong to nothing.
     foreign: usize,
+    /// The first thing that is wrong.
+    fault: Option<Fault>,
+    /// Faults beyond those that are told.
+    more_faults: usize,
 }
 
 #[derive(Debug, Default)]
@@ -33,25 +46,52 @@ struct OpenRecord {
 
 impl Parser {
     /// Reads the next line.
-    pub(super) fn line(&mut self, text: &str) -> Result<(), Fault> {
+    pub(super) fn line(&mut self, Line { text, is_whole }: &Line) {
         self.line += 1;
-        let line = self.line;
-        let read = self.read(text.trim_end_matches(['\n', '\r']));
         // A line without an end may have been cut off anywhere; its record then has no end either.
-        let whole = text.ends_with('\n') || self.open.is_none();
-        read.or_else(|problem| if whole { Err(Fault { line, problem }) } else { Ok(()) })
+        let is_cut = !is_whole && self.open.is_some();
+        let begun = self.open.as_ref().map(|record| record.line);
+        if let Err(problem) = self.read(text)
+            && !is_cut
+        {
+            self.leave_out(begun, problem);
+        }
+    }
+
+    /// Leaves out the line that is wrong, and the record that it is in.
+    fn leave_out(&mut self, begun: Option<usize>, problem: String) {
+        let what = match begun {
+            Some(line) => format!("the record that begins in line {line} was left out"),
+            None => "the line was left out".to_owned(),
+        };
+        // Its end has been read when it was found wanting as a whole.
+        self.skips = self.open.take().is_some();
+        self.is_lost |= begun.is_some();
+        self.due = None;
+        if self.dump.warnings.len() < MOST_TOLD {
+            self.dump.warnings.push(format!("line {}: {problem}; {what}", self.line));
+        } else {
+            self.more_faults += 1;
+        }
+        self.fault.get_or_insert(Fault { line: self.line, problem });
     }
 
     fn read(&mut self, text: &str) -> Result<(), String> {
         if text == "Path[" {
             // One that was not closed was written by a program that was stopped.
             self.drop_open();
+            self.skips = false;
             self.open = Some(OpenRecord { line: self.line, ..OpenRecord::default() });
             return Ok(());
         }
         let Some(record) = &mut self.open else {
             if let Some(note) = text.strip_prefix('#') {
+                self.skips = false;
                 return self.note(note);
+            }
+            if self.skips {
+                self.skips = text != "]";
+                return Ok(());
             }
             self.foreign += usize::from(!text.trim().is_empty());
             return Ok(());
@@ -92,6 +132,8 @@ impl Parser {
         }
         if note.outcome.has_path() {
             self.due = Some((note, self.line));
+        } else if self.is_lost {
+            self.lost_steps += 1;
         } else if let Some(last) = self.dump.records.len().checked_sub(1) {
             self.push_step(note, self.line, last);
         } else {
@@ -124,6 +166,7 @@ impl Parser {
             (note, line)
         });
         self.dump.records.push(record);
+        self.is_lost = false;
         self.push_step(note, line, index);
         Ok(())
     }
@@ -132,18 +175,30 @@ impl Parser {
         if let Some(record) = self.open.take() {
             let text = format!("the record of line {} has no end and was left out", record.line);
             self.dump.warnings.push(text);
-            self.due = None;
+            (self.due, self.is_lost) = (None, true);
         }
     }
 
-    /// What was read, when no line is left.
-    pub(super) fn finish(mut self) -> Dump {
+    /// What was read, when no line is left, and the first thing that was wrong.
+    pub(super) fn finish(mut self) -> (Dump, Option<Fault>) {
         self.drop_open();
+        if self.more_faults > 0 {
+            let text =
+                format!("{} more lines are wrong and were left out likewise", self.more_faults);
+            self.dump.warnings.push(text);
+        }
+        if self.lost_steps > 0 {
+            let text = format!(
+                "{} steps from paths that were left out were left out, too",
+                self.lost_steps
+            );
+            self.dump.warnings.push(text);
+        }
         if self.foreign > 0 {
             let text = format!("{} lines outside of records were left out", self.foreign);
             self.dump.warnings.push(text);
         }
-        self.dump
+        (self.dump, self.fault)
     }
 }
 

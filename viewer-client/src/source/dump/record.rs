@@ -171,8 +171,7 @@ impl OpenVertex {
 
 /// A density; `None` for what Mitsuba prints where one overflows.
 fn density(key: &str, value: &str) -> Result<Option<f64>, String> {
-    let number: Result<f64, _> = value.parse();
-    let number = number.ok().ok_or_else(|| format!("`{key} = {value}` should be a number"))?;
+    let number = number(value).ok_or_else(|| format!("`{key} = {value}` should be a number"))?;
     Ok((number.is_finite() && number >= 0.0).then_some(number))
 }
 
@@ -180,10 +179,18 @@ fn density(key: &str, value: &str) -> Result<Option<f64>, String> {
 fn weight(key: &str, value: &str) -> Result<Option<Rgb>, String> {
     let problem = || format!("`{key} = {value}` should be 3 numbers in brackets");
     let inner = value.strip_prefix('[').and_then(|v| v.strip_suffix(']')).ok_or_else(problem)?;
-    let parsed: Option<Vec<f64>> = inner.split(',').map(|n| n.trim().parse().ok()).collect();
+    let parsed: Option<Vec<f64>> = inner.split(',').map(number).collect();
     let rgb: Option<[f64; 3]> = parsed.and_then(|numbers| numbers.try_into().ok());
     let rgb = rgb.ok_or_else(problem)?;
     Ok(rgb.iter().all(|c| c.is_finite() && *c >= 0.0).then_some(Rgb::from(rgb)))
+}
+
+/// A number as C prints it, which has many ways to say that it is none: `nan`, `-nan(ind)`,
+/// `1.#QNAN`, `-1.#IND`, `1.#INF`.
+fn number(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let is_none = || text.contains('#') || text.trim_start_matches('-').starts_with("nan(");
+    text.parse().ok().or_else(|| is_none().then_some(f64::NAN))
 }
 
 fn vector(key: &str, value: &str) -> Result<DVec3, String> {
@@ -195,12 +202,15 @@ const LARGEST: f64 = 1e15;
 
 /// `[a, b, ...]`: finite numbers.
 fn numbers<const N: usize>(key: &str, value: &str) -> Result<[f64; N], String> {
-    let problem =
-        || format!("`{key} = {value}` should be {N} finite numbers in brackets, of 1e15 at most");
+    let problem = || {
+        let parts = value.split(',').count();
+        let point = if parts == 2 * N { "; a point divides whole and fraction" } else { "" };
+        format!(
+            "`{key} = {value}` should be {N} finite numbers in brackets, of 1e15 at most{point}"
+        )
+    };
     let inner = value.strip_prefix('[').and_then(|v| v.strip_suffix(']')).ok_or_else(problem)?;
-    let parsed: Option<Vec<f64>> = inner
-        .split(',')
-        .map(|n| n.trim().parse().ok().filter(|n: &f64| n.abs() <= LARGEST))
-        .collect();
+    let parsed: Option<Vec<f64>> =
+        inner.split(',').map(|n| number(n).filter(|n| n.abs() <= LARGEST)).collect();
     parsed.and_then(|numbers| numbers.try_into().ok()).ok_or_else(problem)
 }

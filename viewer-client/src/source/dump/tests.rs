@@ -7,6 +7,7 @@ use common::{Event, Rgb, SceneFrame, SceneMesh, VertexKind};
 use glam::DVec3;
 
 use super::parse::Parser;
+use super::text::Lines;
 use super::*;
 
 /// A path from a lamp over a mirror to the camera.
@@ -83,12 +84,19 @@ Path[
 ]
 ";
 
-fn parse(text: &str) -> Result<Dump, Fault> {
+/// The whole of it, and the first thing that is wrong.
+fn parse_all(text: &str) -> (Dump, Option<Fault>) {
     let mut parser = Parser::default();
-    for line in text.split_inclusive('\n') {
-        parser.line(line)?;
+    let mut lines = Lines::new(std::io::Cursor::new(text.to_owned())).expect("memory");
+    while let Some(line) = lines.next().expect("memory") {
+        parser.line(&line);
     }
-    Ok(parser.finish())
+    parser.finish()
+}
+
+fn parse(text: &str) -> Result<Dump, Fault> {
+    let (dump, fault) = parse_all(text);
+    fault.map_or(Ok(dump), Err)
 }
 
 #[test]
@@ -248,6 +256,77 @@ fn faults_name_their_line() {
         assert!(fault.problem.contains(part), "`{to}`: {fault:?}");
         assert_eq!(fault.line, line, "`{to}`: {fault:?}");
     }
+}
+
+/// A record in which something is wrong takes nothing else with it.
+#[test]
+fn a_faulty_record_is_left_out_with_its_steps_and_told() {
+    for (from, to) in [
+        ("p = [0, 0, 0]", "p = [nan, 0, 0]"),
+        ("p = [0, 0, 0]", "p = [-nan(ind), 0, 0]"),
+        ("p = [0, 0, 0]", "p = [1.#QNAN, 0, 0]"),
+        ("p = [0, 0, 0]", "p = [0, 1e999, 0]"),
+        ("p = [0, 0, 0]", "p = [0,5, 0,5, 0,5]"),
+        ("n = [0, -1, 0]", "n = [nan, nan, nan]"),
+        ("uv = [12.5, 30.25]", "uv = [inf, 30.25]"),
+        ("type = emitterSample", "type = teapot"),
+        ("Vertex 2 =>", "Vertex 3 =>"),
+    ] {
+        let bad = RECORD.replacen(from, to, 1);
+        let text = format!(
+            "# seed chain=1 step=0\n{RECORD}# step=0 accepted mut=lens a=0.5\n{bad}\
+             # step=1 rejected mut=lens a=0.5\n# step=2 accepted mut=caustic a=0.5\n{RECORD}\
+             # step=3 failed mut=lens\n"
+        );
+        let (dump, fault) = parse_all(&text);
+        let told: Vec<_> = dump.steps.iter().map(|step| (step.number, step.record)).collect();
+        assert_eq!(told, [(0, 0), (3, 1), (4, 1)], "{to}: neither the record nor what follows");
+        assert_eq!(dump.records.len(), 2, "{to}");
+        let line = fault.expect("it is wrong").line;
+        assert!((73..=142).contains(&line), "{to}: line {line}");
+        let warning = &dump.warnings[0];
+        let begins = warning.starts_with(&format!("line {line}: ")) && warning.contains("line 73");
+        assert!(begins, "{to}: {:?}", dump.warnings);
+        assert!(dump.warnings[1].starts_with("1 steps"), "{to}: {:?}", dump.warnings);
+        assert_eq!(dump.warnings.len(), 2, "{to}: {:?}", dump.warnings);
+    }
+    let comma = parse(&RECORD.replacen("p = [0, 0, 0]", "p = [0,5, 0,5, 0,5]", 1));
+    assert!(comma.expect_err("no numbers").problem.contains("a point divides"));
+}
+
+#[test]
+fn what_is_no_number_in_a_density_is_not_known() {
+    for none in ["nan", "-nan(ind)", "1.#QNAN", "-1.#IND", "inf", "1.#INF"] {
+        let text = with_numbers().replacen("= 11e-2", &format!("= {none}"), 1);
+        let dump = parse(&text).unwrap_or_else(|fault| panic!("{none}: {fault:?}"));
+        let numbers = dump.records[0].vertices[1].numbers;
+        assert!(numbers.from_light.is_none() && numbers.from_eye.is_some(), "{none}: {numbers:?}");
+    }
+}
+
+#[test]
+fn many_faults_are_counted() {
+    let bad = RECORD.replacen("p = [0, 0, 0]", "p = [nan, 0, 0]", 1);
+    let (dump, _) = parse_all(&format!("{}{RECORD}", bad.repeat(25)));
+    assert_eq!((dump.records.len(), dump.warnings.len()), (1, 11), "{:?}", dump.warnings);
+    assert!(dump.warnings[10].starts_with("15 more"), "{:?}", dump.warnings);
+}
+
+#[test]
+fn a_file_is_read_in_any_encoding_and_refused_by_its_first_fault() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("paths.txt");
+    let marked: Vec<u8> =
+        format!("\u{feff}{RECORD}").encode_utf16().flat_map(u16::to_le_bytes).collect();
+    host::file::write(&file, &marked).expect("writable");
+    let dump = read(&file).expect("a dump");
+    assert_eq!(dump, parse(RECORD).expect("a record"));
+    let faulty = RECORD.replace("p = [4, 4, 0]", "p = [4, nan, 0]");
+    host::file::write(&file, faulty.as_bytes()).expect("writable");
+    let error = read(&file).expect_err("nothing is left").to_string();
+    assert!(error.contains("paths.txt, line 52: "), "{error}");
+    host::file::write(&file, b"\xff\xfe\x00\xd8\x00").expect("writable");
+    assert!(matches!(read(&file), Err(DumpError::Empty(_))), "half a character");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use common::Camera;
 use glam::Vec3;
 use shaders::{LinePoint, role};
 
-use crate::settings::DrawingAids;
+use crate::settings::SceneSettings;
 use crate::value::Bounds;
 
 /// Size of the camera model, in radii of the scene.
@@ -24,7 +24,7 @@ pub fn drawing_aids(
     bounds: Bounds,
     camera: Option<&Camera>,
     up: Vec3,
-    wanted: DrawingAids,
+    wanted: &SceneSettings,
 ) -> Vec<LinePoint> {
     let mut points = Vec::new();
     if wanted.grid {
@@ -105,7 +105,8 @@ mod tests {
         };
         let camera = Camera::new(&pose, 4, 3).expect("a valid pose");
         let with = |camera_on, grid| {
-            drawing_aids(bounds, Some(&camera), Vec3::Y, DrawingAids { camera: camera_on, grid })
+            let wanted = SceneSettings { camera: camera_on, grid, ..SceneSettings::default() };
+            drawing_aids(bounds, Some(&camera), Vec3::Y, &wanted)
         };
         assert!(with(false, false).is_empty(), "nothing wanted");
         let model = with(true, false);

@@ -17,6 +17,8 @@ use std::collections::VecDeque;
 
 use common::{CompiledFilter, PathBatch};
 
+use crate::value::rates::RateMeter;
+
 /// What came, and what did not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
@@ -43,6 +45,8 @@ pub struct Store {
     held: usize,
     budget: usize,
     counts: Counts,
+    path_rate: RateMeter,
+    byte_rate: RateMeter,
     tone: Tone,
     classes: Classes,
     drawn: Drawn,
@@ -59,6 +63,8 @@ impl Store {
             held: 0,
             budget,
             counts: Counts::default(),
+            path_rate: RateMeter::default(),
+            byte_rate: RateMeter::default(),
             tone: Tone::default(),
             classes: Classes::default(),
             drawn: Drawn::default(),
@@ -68,7 +74,7 @@ impl Store {
 
     /// Takes every path of a batch.
     pub fn append(&mut self, batch: &PathBatch) {
-        self.note(batch);
+        self.count(batch);
         let mut reader = batch.reader();
         while let Some(path) = reader.next() {
             let full = |page: &Page| !page.has_room(path.vertices.len());
@@ -80,7 +86,7 @@ impl Store {
             let Some(page) = self.pages.back_mut() else { return };
             let class = self.classes.number(path.vertices);
             page.push(&path, self.next_ordinal, class, wanted);
-            self.tone.note(path.header.luminance);
+            self.tone.include(path.header.luminance);
             self.next_ordinal = self.next_ordinal.wrapping_add(1);
             self.held += 1;
         }
@@ -88,18 +94,18 @@ impl Store {
 
     /// Counts a batch that is not kept because the cloud is frozen.
     pub fn skip(&mut self, batch: &PathBatch) {
-        self.note(batch);
+        self.count(batch);
         self.counts.skipped += batch.len() as u64;
     }
 
-    fn note(&mut self, batch: &PathBatch) {
+    fn count(&mut self, batch: &PathBatch) {
         self.counts.batches += 1;
         self.counts.paths += batch.len() as u64;
         self.counts.bytes += batch.byte_len() as u64;
     }
 
     /// Remembers that `paths` paths never came.
-    pub fn note_gap(&mut self, paths: u64) {
+    pub fn count_gap(&mut self, paths: u64) {
         self.counts.gaps += 1;
         self.counts.dropped += paths;
     }
@@ -171,6 +177,22 @@ impl Store {
     /// What came so far.
     pub fn counts(&self) -> Counts {
         self.counts
+    }
+
+    /// Notes what had come by `time` (seconds), for the rates.
+    pub fn measure(&mut self, time: f64) {
+        self.path_rate.record(time, self.counts.paths);
+        self.byte_rate.record(time, self.counts.bytes);
+    }
+
+    /// Paths received a second.
+    pub fn path_rate(&self) -> f64 {
+        self.path_rate.per_second()
+    }
+
+    /// Bytes of paths received a second.
+    pub fn byte_rate(&self) -> f64 {
+        self.byte_rate.per_second()
     }
 
     /// The range of radiances that paths carry.

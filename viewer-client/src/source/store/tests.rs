@@ -113,8 +113,8 @@ fn the_newest_paths_are_found_across_pages() {
 #[test]
 fn gaps_and_skips_are_counted() {
     let mut store = Store::new(usize::MAX);
-    store.note_gap(17);
-    store.note_gap(3);
+    store.count_gap(17);
+    store.count_gap(3);
     store.skip(&batch(0, 5, 2));
     let counts = store.counts();
     assert_eq!((counts.gaps, counts.dropped), (2, 20), "gaps");
@@ -126,7 +126,7 @@ fn gaps_and_skips_are_counted() {
 fn tone_follows_the_radiance() {
     let mut tone = Tone::default();
     for i in 0..20_000_u32 {
-        tone.note(if i % 2 == 0 { 1.0 } else { 256.0 });
+        tone.include(if i % 2 == 0 { 1.0 } else { 256.0 });
     }
     let (low, high) = tone.range();
     assert!((-5.0..-2.0).contains(&low), "low end {low}");

@@ -19,7 +19,7 @@ pub struct Tone {
 
 impl Tone {
     /// Learns from one path.
-    pub fn note(&mut self, radiance: f32) {
+    pub fn include(&mut self, radiance: f32) {
         let stops = decode_radiance(encode_radiance(radiance));
         self.paths = (self.paths + 1.0).min(MEMORY);
         let step = (stops - self.mean) / self.paths;

@@ -1,0 +1,83 @@
+//! How paths are drawn.
+
+use super::choice::choices;
+
+choices! {
+    /// What is drawn of a path.
+    #[derive(Default)]
+    pub enum Marks {
+        /// Its edges, and dots as wanted.
+        #[default]
+        Lines,
+        /// Its vertices only.
+        Vertices,
+        /// The vertex on the light and the one that the camera sees.
+        Ends,
+    }
+}
+
+choices! {
+    /// What becomes of paths that cross on the screen.
+    #[derive(Default)]
+    pub enum Blend {
+        /// The newest lies on top, and on dark ground glows.
+        #[default]
+        Newest,
+        /// Each counts by its opacity, near ones more, in whatever order they came.
+        Weighted,
+        /// They add up like light, for dark ground.
+        Add,
+    }
+}
+
+choices! {
+    /// How values become places on the ramp of colours.
+    #[derive(Default)]
+    pub enum ColorScale {
+        /// Equal factors are equal steps.
+        #[default]
+        Log,
+        /// Equal differences are equal steps.
+        Linear,
+    }
+}
+
+choices! {
+    /// What the colour of a path says, in the order of the shader's codes.
+    #[derive(Default)]
+    pub enum ColorMode {
+        /// The light that the path carries.
+        #[default]
+        Radiance,
+        /// The strategy whose proposal it was.
+        Strategy,
+        /// Its number of edges, on a ramp.
+        Length,
+        /// Its luminance, on a ramp.
+        Luminance,
+        /// How many paths have come since, on a ramp.
+        Age,
+        /// The kind of each vertex.
+        Kind,
+        /// Its chain.
+        Chain,
+        /// Its class, such as LSDE.
+        Class,
+        /// Nothing: all paths alike.
+        Constant,
+        /// The throughput at each vertex, on a ramp: what is left of the light on its way from there
+        /// to the lens.
+        Throughput,
+        /// How many steps its chain stayed, on a ramp.
+        Dwell,
+        /// The probability with which it was accepted, on a ramp.
+        Acceptance,
+    }
+}
+
+impl ColorMode {
+    /// True when the colours come from the ramp, and the scale says how.
+    pub fn has_scale(self) -> bool {
+        matches!(self, Self::Length | Self::Luminance | Self::Throughput)
+    }
+}
