@@ -102,6 +102,23 @@ fn samples_are_unit_vectors_that_evaluate() {
     }
 }
 
+/// A direction exactly along the surface, as between two points of one flat wall, carries nothing to
+/// either side: its density is zero, and quotients of densities would be NaN.
+#[test]
+fn nothing_is_scattered_along_the_surface() {
+    let along = DVec3::X;
+    for (name, bsdf) in models() {
+        for w in directions(200).chain([DVec3::Y]) {
+            for event in [Event::Diffuse, Event::Glossy] {
+                for (w_l, w_e) in [(along, w), (w, along)] {
+                    let found = bsdf.evaluate(DVec3::Z, w_l, w_e, event);
+                    assert_eq!(found, None, "{name}: {event:?} from {w_l} to {w_e}");
+                }
+            }
+        }
+    }
+}
+
 fn close(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-6 * a.abs().max(b.abs())
 }

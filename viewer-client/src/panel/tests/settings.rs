@@ -55,6 +55,17 @@ impl Panel for Rows {
     }
 }
 
+/// A script may set more digits than a slider shows; looking at them changes nothing.
+#[test]
+fn a_slider_leaves_a_value_that_it_rounds_alone() {
+    let mut stage = Stage::new(Rows);
+    stage.settings.cloud.width = 1.2345;
+    let mut harness = stage.harness();
+    harness.run();
+    drop(harness);
+    assert_eq!(stage.said, [], "nobody touched it");
+}
+
 #[test]
 fn a_row_explains_itself_with_its_keys() {
     let mut harness = Stage::new(Rows).harness();
