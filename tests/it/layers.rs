@@ -382,6 +382,7 @@ const RULES: &[Rule] = &[
             "viewer-client/src/main",
             "viewer-client/src/source/connection",
             "viewer-client/src/source/dump/mod",
+            "viewer-client/src/source/dump/tests",
             "viewer-client/src/source/embedded",
         ],
         never: &["host", "std::fs", "std::net", "std::process", "std::thread", "tokio"],

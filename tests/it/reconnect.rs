@@ -93,7 +93,7 @@ fn another_scene_is_shown_at_once_whatever_the_filter_names() {
     };
     let wanted = "any on material \"fern\"";
     until("the filter is in force", &mut viewer, |v| follows(v, wanted));
-    let room = viewer.bounds();
+    let room = viewer.triangles();
 
     first.stop();
     let second = daemon_of("furnace", address);
@@ -101,7 +101,7 @@ fn another_scene_is_shown_at_once_whatever_the_filter_names() {
     let name = |v: &Viewer| v.status().welcome.as_ref().map(|w| w.scene_name.clone());
     until("the other scene", &mut viewer, |v| name(v).as_deref() == Some("furnace"));
     until("all of its paths", &mut viewer, |v| v.is_settled() && v.paths_received() > 100);
-    assert_ne!(viewer.bounds(), room, "its surfaces are shown");
+    assert_ne!(viewer.triangles(), room, "its surfaces are shown");
     let filter = &viewer.settings().filter;
     assert!(filter.complaint().is_some_and(|why| why.message.contains("fern")), "marked");
     assert_eq!((filter.text().text(), filter.whole().text()), (wanted, ""), "kept, and off");

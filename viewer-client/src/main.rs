@@ -5,8 +5,9 @@ use std::process::ExitCode;
 use anyhow::Context as _;
 use clap::Parser as _;
 use tracing_subscriber::EnvFilter;
+use viewer_client::app::Failed;
 use viewer_client::app::cli::Cli;
-use viewer_client::app::run::{Failed, run};
+use viewer_client::app::run::run;
 use viewer_client::source::connection::SessionError;
 
 /// Exit code for what was asked for and could not be done.

@@ -1,5 +1,5 @@
 //! What both programs ask of the machine they run on: a [`log`] that never waits for its reader,
-//! files that are never half written ([`file`]), [`picture`]s as other programs write them, and the
+//! files that are never half written ([`mod@file`]), [`picture`]s as other programs write them, and the
 //! [`signal`]s that end a program.
 //!
 //! Terminals close, disks fill up, readers of pipes go away. None of this may cost anyone the work

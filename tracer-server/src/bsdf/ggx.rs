@@ -23,7 +23,7 @@ pub(super) const SMOOTH: f64 = 1e-3;
 
 impl Ggx {
     /// Of the roughness `alpha`, the slope of the microfacets' root mean square; brought into
-    /// [`SMOOTH`]..1.
+    /// `SMOOTH`..1.
     pub fn new(alpha: f64) -> Self {
         Self { alpha: alpha.clamp(SMOOTH, 1.0) }
     }

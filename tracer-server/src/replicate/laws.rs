@@ -197,7 +197,7 @@ enum Flaw {
     PooledB,
 }
 
-const POOL: u64 = 4;
+const POOL: u64 = 2;
 const CHAINS: u32 = 1;
 const STEPS: usize = 4;
 
@@ -303,7 +303,7 @@ fn grouped(films: &[Film]) -> Vec<Film> {
     films.chunks(100).map(mean).collect()
 }
 
-/// Replicates of four samples and a chain of four steps have the right mean on targets that
+/// Replicates of two samples and a chain of four steps have the right mean on targets that
 /// show all of the light; and each of the errors that are easily made is found.
 #[test]
 fn small_replicates_have_the_right_mean() {
@@ -327,7 +327,8 @@ fn small_replicates_have_the_right_mean() {
     for (name, scene, target, flaw) in [
         ("h / rho forgotten", &room, &equalised, Flaw::ShareForgotten),
         ("seeds of a path tracer", &glass, &whole, Flaw::PathTracedPool),
-        ("b of all replicates", &room, &equalised, Flaw::PooledB),
+        // A pool of two often has one bright sample, and shows the light of both in its place.
+        ("b of all replicates", &glass, &whole, Flaw::PooledB),
     ] {
         let suite = compare(name, &made(scene, target, flaw), &references(scene));
         assert!(suite.worst() > 6.0, "{name} was not found: {}", suite.verdict());

@@ -4,6 +4,7 @@ pub mod background;
 pub mod bench;
 pub mod cli;
 pub mod desktop;
+mod failed;
 pub mod headless;
 pub mod pace;
 pub mod preferences;
@@ -14,4 +15,5 @@ mod viewer;
 pub mod watch;
 pub mod window;
 
+pub use failed::Failed;
 pub use viewer::Viewer;

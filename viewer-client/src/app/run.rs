@@ -4,7 +4,6 @@ use std::path::Path;
 use std::time::Duration;
 
 use anyhow::Context as _;
-use thiserror::Error;
 
 use crate::app::Viewer;
 use crate::app::cli::{Action, Cli, Target, ViewArgs};
@@ -15,11 +14,6 @@ use crate::source::{Source, dump, embedded, file};
 
 /// A picture is taken after this long when nothing else is asked for.
 const DEFAULT_WAIT: Duration = Duration::from_secs(5);
-
-/// Something that was asked for and could not be done, although nothing is wrong with how it was asked.
-#[derive(Debug, Error)]
-#[error("{0}")]
-pub struct Failed(pub String);
 
 /// Does what the command line says.
 pub fn run(cli: Cli) -> anyhow::Result<()> {

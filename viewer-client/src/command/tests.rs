@@ -169,7 +169,7 @@ fn mistakes_are_explained() {
     let complaint = |text: &str| text.parse::<Command>().expect_err(text).to_string();
     assert_eq!(complaint(""), "a command is missing");
     assert!(complaint("fly").contains("unknown command `fly`"), "names the word");
-    assert!(complaint("cloud wdith 3").contains("did you mean `cloud width PIXELS`"), "guesses");
+    assert!(complaint("cloud widthh 3").contains("did you mean `cloud width PIXELS`"), "guesses");
     assert!(complaint("cloud width").contains("PIXELS is missing"), "names the parameter");
     assert!(complaint("cloud width thin").contains("`thin` is not a number"), "names the word");
     assert!(complaint("cloud width NaN").contains("`NaN` is not a number"), "no NaN");

@@ -7,7 +7,7 @@ use strum::{EnumMessage, VariantArray};
 
 use super::{CommandError, Shape, Value, Words};
 
-/// One of a closed set of words; [`choices!`] makes such a type.
+/// One of a closed set of words; `choices!` makes such a type.
 pub trait Choice:
     Copy + PartialEq + Debug + Display + FromStr + EnumMessage + VariantArray + 'static
 {

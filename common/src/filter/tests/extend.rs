@@ -20,7 +20,7 @@ fn the_example_of_the_manual_is_a_condition() {
     let condition = read(example).expect(example);
     assert_eq!(text_of(&condition), example, "printed as it was read");
     assert!(manual.contains(&format!("```filter\n{example}\n```")), "the line for docs/FILTERS.md");
-    let wrong = read("returns wihtin 1").expect_err("no such word");
+    let wrong = read("returns withim 1").expect_err("no such word");
     assert!(wrong.span.start == 8 && wrong.message.contains("did you mean `within`"), "{wrong}");
     assert!(read("returns within -1").is_err(), "what `check` is for");
     // The vertices lie at (i, 0, 0) in the file.

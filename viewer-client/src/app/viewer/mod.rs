@@ -4,6 +4,7 @@ mod elsewhere;
 #[cfg(test)]
 mod elsewhere_tests;
 mod on_card;
+mod scripted;
 mod selecting;
 #[cfg(test)]
 mod tests;
@@ -16,7 +17,9 @@ use egui_wgpu::RenderState;
 use super::background::{BackgroundTasks, Outcome, TaskResult};
 use super::desktop::{Connect, Desktop};
 use super::preferences::Preferences;
-use crate::command::{CloudCommand, Command, ImageCommand, PlayCommand, SessionCommand, Trait};
+use crate::command::{
+    CloudCommand, Command, FilterCommand, ImageCommand, PlayCommand, SessionCommand, Trait,
+};
 use crate::draw::gpu::{Quality, Renderer};
 use crate::imaging::{Finding, Job};
 use crate::keys;
@@ -113,46 +116,6 @@ impl Viewer {
         Preferences::of(&self.settings, &self.desktop.preferences)
     }
 
-    /// Follows the commands of a script in their order, each as soon as what it needs has come and what
-    /// the one before began is done.
-    pub fn run_script(&mut self, commands: Vec<Command>) {
-        for command in commands {
-            let is_next = self.source.script.is_empty() && !self.is_at_work();
-            let must_wait =
-                self.source.makes_wait(&command) || self.holds_back && gives_away(&command);
-            if is_next && !must_wait {
-                self.apply(command);
-            } else {
-                self.source.script.push(command);
-            }
-        }
-    }
-
-    /// Whether commands of a script that give something away wait: until all of it has come.
-    pub fn hold_back(&mut self, holds_back: bool) {
-        self.holds_back = holds_back;
-    }
-
-    /// Commands of a script that are still to be followed.
-    pub fn commands_left(&self) -> usize {
-        self.source.script.len()
-    }
-
-    /// The next of them.
-    pub fn next_command(&self) -> Option<&Command> {
-        self.source.script.first()
-    }
-
-    /// True while something that a command began is not done.
-    fn is_at_work(&self) -> bool {
-        self.tasks.is_busy() || self.desktop.is_waiting()
-    }
-
-    /// True when nothing is left to do of what was asked for.
-    pub fn is_idle(&self) -> bool {
-        self.source.script.is_empty() && !self.is_at_work()
-    }
-
     /// True once the user wants to leave.
     pub fn is_closing(&self) -> bool {
         self.closing
@@ -224,29 +187,6 @@ impl Viewer {
         arrived.news || finished
     }
 
-    /// Goes on with what is under way, without taking in what has come. True when anything was done.
-    pub fn work_on(&mut self) -> bool {
-        let finished = self.finish_tasks();
-        if let Some(problem) = self.source.shown.image.drop_misfit(&mut self.settings.image) {
-            self.say(Err(problem));
-        }
-        if !self.source.script.is_empty() {
-            self.go_on();
-        }
-        finished
-    }
-
-    /// True where the next command of the script waits for something to come.
-    pub fn wants_more(&self) -> bool {
-        self.next_command().is_some_and(|command| self.source.makes_wait(command))
-    }
-
-    /// Goes on with the script as far as what has come allows.
-    fn go_on(&mut self) {
-        let commands = std::mem::take(&mut self.source.script);
-        self.run_script(commands);
-    }
-
     /// Does what was asked for, so that it can be undone where it changed a setting.
     pub fn apply(&mut self, command: Command) {
         tracing::trace!("{command}");
@@ -285,6 +225,7 @@ impl Viewer {
             Command::Scene(command) => self.settings.scene.set(&command),
             Command::Filter(command) => {
                 self.settings.filter.apply(&command);
+                self.tell_misfit(&command);
                 self.source.filter_changed(&self.settings);
             }
             Command::Image(command) => {
@@ -304,6 +245,15 @@ impl Viewer {
                 self.source.as_daemon().into_iter().for_each(Daemon::retry_now);
             }
             Command::Session(SessionCommand::Quit) => self.closing = true,
+        }
+    }
+
+    /// Tells why a filter that was just set is left out.
+    fn tell_misfit(&mut self, command: &FilterCommand) {
+        if matches!(command, FilterCommand::Set(_))
+            && let Some(error) = self.settings.filter.complaint()
+        {
+            self.say(Err(format!("The filter is left out: {}.", error.message)));
         }
     }
 
@@ -512,12 +462,8 @@ impl Viewer {
     pub fn bounds(&self) -> Option<Bounds> {
         self.source.shown.model.as_ref().map(|model| model.bounds)
     }
-}
-
-/// True for commands whose result leaves the viewer.
-fn gives_away(command: &Command) -> bool {
-    match command {
-        Command::Image(ImageCommand::Show(layer)) => layer.compares(),
-        _ => command.form().is(Trait::Gives),
+    /// Triangles of the scene on screen, once it has come.
+    pub fn triangles(&self) -> Option<usize> {
+        self.source.shown.model.as_ref().map(|model| model.mesh.triangles.len())
     }
 }

@@ -119,7 +119,8 @@ fn what_is_held_is_judged_by_the_filter() {
     assert_eq!(run("filter set any on material \"wall\""), (0, 2), "names are known");
     assert_eq!(run("filter clear"), (2, 2), "all match again");
     assert_eq!(run("filter set any on object \"room\""), (2, 2), "objects, too");
-    assert_eq!(run("filter set any on object \"box\""), (0, 0), "there is no such thing");
+    assert_eq!(run("filter set any on object \"box\""), (2, 2), "what is not there is left out");
+    assert!(viewer.source.status.notice.as_ref().is_some_and(|n| n.is_bad), "and this is told");
 }
 
 #[test]

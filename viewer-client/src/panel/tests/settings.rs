@@ -62,8 +62,7 @@ fn a_slider_leaves_a_value_that_it_rounds_alone() {
     stage.settings.cloud.width = 1.2345;
     let mut harness = stage.harness();
     harness.run();
-    drop(harness);
-    assert_eq!(stage.said, [], "nobody touched it");
+    assert_eq!(harness.state().said, [], "nobody touched it");
 }
 
 #[test]

@@ -4,6 +4,7 @@
 
 mod backlog;
 mod backoff;
+mod error;
 mod inbox;
 mod peer;
 mod probe;
@@ -11,10 +12,11 @@ mod session;
 mod tls;
 
 pub use backoff::delay;
+pub use error::SessionError;
 pub use inbox::{Arrival, Inbox};
 pub use peer::{Bearer, Peer, Trust};
 pub use proto::Fingerprint;
-pub use session::{Greeting, SceneFetcher, Session, SessionError, own_name};
+pub use session::{Greeting, SceneFetcher, Session, own_name};
 
 use std::fmt;
 use std::sync::Arc;

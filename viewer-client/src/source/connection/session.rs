@@ -6,15 +6,15 @@ use common::{Role, TracerEvent};
 use proto::v1::tracer_client::TracerClient;
 use proto::{
     Hello, MAX_MESSAGE_BYTES, ProtocolVersion, ReceivedScene, SceneAssembler, ViewerEvent,
-    WantedFilter, WireError, v1,
+    WantedFilter, v1,
 };
-use thiserror::Error;
 use tokio::sync::mpsc;
 use tokio_stream::wrappers::ReceiverStream;
 use tonic::service::interceptor::InterceptedService;
 use tonic::transport::{Channel, Endpoint};
-use tonic::{Code, Status, Streaming};
+use tonic::{Code, Streaming};
 
+use super::error::{Broken, SessionError};
 use super::peer::{Bearer, Peer, Trust};
 use super::probe::{self, Found};
 use super::tls;
@@ -35,52 +35,6 @@ const FAREWELL: Duration = Duration::from_millis(300);
 const MAX_NAME: usize = 256;
 /// Messages from this viewer that may wait to be sent.
 const OUTBOX: usize = 32;
-
-/// Why a session could not begin or came to an end.
-#[derive(Debug, Error)]
-pub enum SessionError {
-    /// The address is none.
-    #[error("`{0}` is not an address; write HOST:PORT, such as 127.0.0.1:50061")]
-    BadAddress(String),
-    /// The certificate is not the right one, or there is no TLS.
-    #[error("no trusted connection to {address}: {reason}")]
-    Untrusted {
-        /// HOST:PORT.
-        address: String,
-        /// What is wrong.
-        reason: String,
-    },
-    /// A token must not be seen by others.
-    #[error(
-        "{0} is another machine, and the token would travel unencrypted: trust the daemon's \
-         certificate with --fingerprint or --ca-cert"
-    )]
-    ExposedToken(String),
-    /// The greeting broke off; what is there tells why.
-    #[error("{0}")]
-    Unreachable(String),
-    /// The daemon refused or broke off.
-    #[error("{0}")]
-    Refused(String),
-    /// The daemon said goodbye.
-    #[error("the daemon said goodbye: {0}")]
-    Goodbye(String),
-    /// The stream ended without a goodbye.
-    #[error("the connection was lost")]
-    Lost,
-    /// A message that makes no sense.
-    #[error("the daemon sent something unreadable: {0}")]
-    Unreadable(#[from] WireError),
-}
-
-impl From<Status> for SessionError {
-    fn from(status: Status) -> Self {
-        match status.code() {
-            Code::Unavailable | Code::Cancelled | Code::Unknown => Self::Lost,
-            _ => Self::Refused(format!("the daemon refused: {}", status.message())),
-        }
-    }
-}
 
 /// A client that shows its token.
 type Client = TracerClient<InterceptedService<Channel, Bearer>>;
@@ -201,16 +155,6 @@ impl Session {
             tracing::debug!("the daemon did not answer the goodbye");
         }
     }
-}
-
-/// Why there was no greeting.
-pub(super) enum Broken {
-    /// It is known already.
-    Told(SessionError),
-    /// The connection did not come about, or was broken off.
-    Off,
-    /// There was no encrypted connection, for this reason.
-    Untrusted(String),
 }
 
 /// Why the greeting of `peer` broke off, by what is found at its address; `reason` is what the

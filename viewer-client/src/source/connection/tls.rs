@@ -20,8 +20,8 @@ use tokio_rustls::rustls::{
 };
 use tonic::transport::{Certificate, Channel, ClientTlsConfig, Endpoint};
 
+use super::error::{Broken, SessionError};
 use super::peer::{Peer, Trust};
-use super::session::{Broken, SessionError};
 
 /// The protocol that gRPC speaks inside TLS.
 const HTTP2: &[u8] = b"h2";
