@@ -100,7 +100,7 @@ async fn who_wants_encryption_of_a_daemon_without_is_told_so() {
     let other = Certificate::self_signed(vec!["localhost".to_owned()]).expect("made");
     for trust in [Trust::Pinned(other.fingerprint()), Trust::Authority(other.pem().0.to_owned())] {
         let complaint = is_kept_out(&peer(&server, trust, "")).await.to_string();
-        assert!(complaint.contains("does not encrypt"), "{complaint}");
+        assert!(complaint.contains("does not use encryption"), "{complaint}");
     }
     fixture::stop(server).await;
 }

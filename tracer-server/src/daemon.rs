@@ -36,7 +36,7 @@ pub struct DaemonOptions {
     pub limits: HubLimits,
     /// Bytes of what was shown lately that are kept, so that viewers can pick from it.
     pub archive_bytes: usize,
-    /// Who may connect, and whether others can listen.
+    /// Who may connect, and whether the connection is encrypted.
     pub security: Security,
 }
 

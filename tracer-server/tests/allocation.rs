@@ -7,8 +7,7 @@ use std::alloc::System;
 use common::{ChainId, Rgb};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use tracer_server::bsdf::{
-    BsdfDescription, ConductorDescription, DielectricDescription, Fresnel,
-    PlasticDescription,
+    BsdfDescription, ConductorDescription, DielectricDescription, Fresnel, PlasticDescription,
 };
 use tracer_server::chain::{Chain, Ensemble, EnsembleSettings};
 use tracer_server::film::Film;

@@ -8,7 +8,7 @@ use tests::{FALSE_ALARM, chi_square_test};
 use super::{Bsdf, Dielectric, MODELS, Scatter, specimens};
 use crate::math::{Rng, Stream, uniform_sphere};
 
-/// What the laws must be told of a model.
+/// What the laws must know about a model.
 pub(super) trait Specimens: Scatter + Copy + 'static {
     /// How far a sum over its samples may be from the truth: where weights vary, the evenness of the
     /// numbers limits what is known.

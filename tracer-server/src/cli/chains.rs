@@ -15,14 +15,14 @@ use crate::scene::{Scene, StrategySetting, Wish};
 /// Seed, chains, threads and strategies.
 #[derive(Args, Clone, Debug)]
 pub struct ChainArgs {
-    /// Number of the run: the same seed gives the same result.
+    /// Seed of the random numbers: the same seed gives the same result.
     #[arg(long, default_value_t = EnsembleSettings::default().seed)]
     pub seed: u64,
     /// Number of Markov chains [default: 512 for a picture, 128 to be watched].
     #[arg(long, value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=65_536))]
     pub chains: Option<u32>,
-    /// Worker threads; as many as there are cores without.
+    /// Worker threads [default: the number of cores].
     #[arg(long, value_name = "N")]
     #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
     pub threads: Option<usize>,
@@ -41,7 +41,7 @@ pub struct StrategyArgs {
     #[arg(long, value_name = "NAME[=WEIGHT],...", value_delimiter = ',', help_heading = HEADING)]
     #[arg(long_help = strategies_help())]
     pub strategies: Vec<Weighted>,
-    /// Do without these mutation strategies.
+    /// Leave out these mutation strategies.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', help_heading = HEADING)]
     pub without: Vec<String>,
     /// Set a parameter of a strategy, such as `lens.radius=0.1..20`; may be repeated.
@@ -111,15 +111,14 @@ impl FromStr for Tuned {
 }
 
 fn number(text: &str) -> Result<f64, String> {
-    text.trim().parse().map_err(|_error| format!("`{text}` is no number"))
+    text.trim().parse().map_err(|_error| format!("`{text}` is not a number"))
 }
 
 fn strategies_help() -> String {
     let lines = KINDS.map(|kind| format!("\n  {:14} {}", kind.key(), kind.weight));
     format!(
-        "Use these mutation strategies only, with weights where given, such as \
-         `lens=0.3,bidirectional`; weights are relative to each other.\n\nThe strategies with their \
-         usual weights:{}",
+        "Use only these mutation strategies, with weights if given, such as \
+         `lens=0.3,bidirectional`; weights are relative to each other.\n\nThe strategies with their default weights:{}",
         lines.concat()
     )
 }
@@ -197,7 +196,7 @@ impl ChainArgs {
         .collect();
         ensure!(
             idle.is_empty(),
-            "{} would change nothing: {} has no {}; leave it out, or use --integrator mlt",
+            "{} would have no effect: {} has no {}; leave it out, or use --integrator mlt",
             idle.join(", "),
             Integrator::from(integrator).name(),
             if has_chains { "mutation strategies" } else { "Markov chains" },
@@ -225,8 +224,8 @@ impl ChainArgs {
         let names = Mixture::names_for(&strategies, scene.camera(), scene.features());
         ensure!(
             !names.is_empty(),
-            "none of the mutation strategies that are switched on can change a path of this \
-             scene; switch on others with --strategies"
+            "none of the enabled mutation strategies applies to this scene; enable others with \
+            --strategies"
         );
         let defaults = EnsembleSettings::default();
         Ok(EnsembleSettings {

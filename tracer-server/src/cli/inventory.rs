@@ -37,7 +37,7 @@ pub(crate) struct Inventory {
     pub(crate) features: Vec<&'static str>,
     /// What it may leave out.
     pub(crate) switched_off: Vec<&'static str>,
-    /// What the file asks for in vain, and what was mended.
+    /// What in the file is not supported, and what was repaired.
     pub(crate) warnings: Vec<String>,
     /// Time to read and check the files, in seconds.
     pub(crate) load_seconds: f64,

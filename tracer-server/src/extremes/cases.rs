@@ -269,7 +269,7 @@ fn light_is_lost_right_at_a_surface() {
 #[test]
 fn a_lamp_in_the_place_of_another_is_left_out() {
     let scene = twice(6).build();
-    let told = scene.warnings().iter().any(|w| w.starts_with("2 light triangles were left out"));
+    let told = scene.warnings().iter().any(|w| w.starts_with("2 light triangles were ignored"));
     assert!(told, "{:?}", scene.warnings());
     check_all(&[row("coincident lamps", twice(6), like(base(), 1.0))]);
 }

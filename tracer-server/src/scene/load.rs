@@ -158,12 +158,10 @@ fn check(read: Read) -> Result<Loaded, LoadError> {
     for drop in dropped {
         let name = names.get(drop.mesh).map_or("", String::as_str);
         let place = origins.of(Part::Mesh(drop.mesh), "");
-        warnings.push(
-            place.warning(format!(
-                "mesh `{name}`: {} triangles without area left out",
-                drop.triangles
-            )),
-        );
+        warnings.push(place.warning(format!(
+            "mesh `{name}`: {} triangles without area were ignored",
+            drop.triangles
+        )));
     }
     Ok(Loaded { description, warnings, strategies })
 }

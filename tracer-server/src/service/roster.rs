@@ -1,4 +1,4 @@
-//! Who is there, who holds the lease, and who may come back to it.
+//! Who is connected, who holds the lease, and who may get it back.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -134,10 +134,12 @@ impl Roster {
         Err(match state.driver() {
             _ if !member.may_drive => OBSERVERS_TOKEN.to_owned(),
             Some(driver) => format!(
-                "only the driver gives orders, and that is {} (session {}): ask for the lease",
+                "only the driver can give orders, and that is {} (session {}): ask for the lease",
                 driver.author.name, driver.author.session
             ),
-            None => "only the driver gives orders, and nobody is: ask for the lease".to_owned(),
+            None => "only the driver can give orders, and nobody is driving: ask for the \
+                lease"
+                .to_owned(),
         })
     }
 
@@ -168,11 +170,11 @@ impl Roster {
             }
             LeaseRequest::Release => state.asking.retain(|&asking| asking != session),
             LeaseRequest::HandOver(_) if role != Role::Driver => {
-                return Err("only the driver hands the lease over".to_owned());
+                return Err("only the driver can hand over the lease".to_owned());
             }
             LeaseRequest::HandOver(to) => {
                 let Some(heir) = state.members.get(&to) else {
-                    return Err(format!("no viewer has the session {to}"));
+                    return Err(format!("no viewer has session {to}"));
                 };
                 if !heir.may_drive {
                     return Err(format!("{}: {OBSERVERS_TOKEN}", heir.attendee.author.name));
@@ -225,7 +227,7 @@ impl Roster {
         if let Some((&session, _)) = ghost {
             state.asking.retain(|&asking| asking != session);
             let memory = state.members.remove(&session).map(|member| member.memory);
-            self.hub.dismiss(session, "the viewer came back on another connection");
+            self.hub.dismiss(session, "the viewer reconnected on another connection");
             return memory;
         }
         let fresh = |absent: &Absent| absent.since.elapsed() < ABSENCE;
@@ -278,7 +280,7 @@ impl Roster {
 
 /// Why some never drive.
 const OBSERVERS_TOKEN: &str =
-    "the observers' token opens no steering; connect with the driver's token";
+    "the observers' token does not allow steering; connect with the driver's token";
 
 impl State {
     fn driver(&self) -> Option<&Attendee> {
@@ -291,7 +293,10 @@ impl State {
 fn secret() -> String {
     let mut bytes = [0; RESUME_BYTES];
     if SystemRandom::new().fill(&mut bytes).is_err() {
-        tracing::warn!("the system gives no random numbers: viewers cannot resume their sessions");
+        tracing::warn!(
+            "the system provides no random numbers: viewers cannot resume their \
+            sessions"
+        );
         return String::new();
     }
     blake3::Hash::from_bytes(bytes).to_hex().to_string()

@@ -35,7 +35,10 @@ pub enum PictureError {
         problem: ExrError,
     },
     /// There is no picture in it, or more than one.
-    #[error("`{file}` has {what} among its channels {channels}; call the picture's R, G and B")]
+    #[error(
+        "`{file}` has {what} among its channels {channels}; name the picture's channels R, G \
+        and B"
+    )]
     Channels {
         /// The file.
         file: String,

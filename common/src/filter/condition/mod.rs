@@ -128,7 +128,7 @@ pub struct Proposal<T> {
     pub label: String,
     /// What it means.
     pub meaning: &'static str,
-    /// What is made; nothing where the line only tells that there is nothing to choose.
+    /// What is made; nothing if the line only says that there is nothing to choose.
     pub made: Option<T>,
 }
 

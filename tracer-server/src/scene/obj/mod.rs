@@ -36,7 +36,7 @@ pub(crate) struct ObjScene {
     pub(crate) meshes: Vec<Mesh>,
     /// The textures that its materials read.
     pub(crate) textures: Vec<Texture>,
-    /// What it asks for in vain.
+    /// What of it is not supported.
     pub(crate) warnings: Vec<Warning>,
 }
 

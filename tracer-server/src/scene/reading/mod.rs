@@ -22,7 +22,7 @@ pub(crate) struct Read {
     pub(crate) description: SceneDescription,
     /// Where its parts were written.
     pub(crate) origins: Origins,
-    /// What it asks for in vain.
+    /// What of it is not supported.
     pub(crate) warnings: Vec<Warning>,
     /// What it asks of the mutation strategies.
     pub(crate) strategies: Vec<StrategySetting>,
