@@ -26,7 +26,7 @@ pub const fn range<T: Copy>(low: T, high: T) -> Range<T> {
 }
 
 impl<T: Copy> Range<T> {
-    /// Equal factors are equal steps.
+    /// Equal ratios are equal steps.
     #[must_use]
     pub const fn log(self) -> Self {
         Self { logarithmic: true, ..self }

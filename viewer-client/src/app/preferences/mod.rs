@@ -107,8 +107,8 @@ impl Preferences {
             Ok(Content::Nothing) => first,
             Ok(Content::Damaged(reason)) => {
                 complaints.push(format!(
-                    "{reason}. The usual settings are used; mend the file and start again, or it is \
-                     kept aside with the ending .damaged as soon as a setting changes"
+                    "{reason}. Default settings are used. Fix the file and start again; otherwise \
+                    it is renamed to end in .damaged as soon as a setting changes"
                 ));
                 Self::default()
             }
@@ -295,9 +295,9 @@ impl Keeper {
         self.problem = match &written {
             Ok(None) => None,
             Ok(Some(place)) => {
-                Some(format!("{name} was damaged, and is kept as {}", place.display()))
+                Some(format!("{name} was damaged, and has been kept as {}", place.display()))
             }
-            Err(error) => Some(format!("settings are not kept in {name}: {error}")),
+            Err(error) => Some(format!("settings cannot be saved in {name}: {error}")),
         };
         if let Some(problem) = &self.problem {
             tracing::warn!("{problem}");

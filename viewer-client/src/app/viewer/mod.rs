@@ -311,8 +311,8 @@ impl Viewer {
                 let image = (of == shown.serial()).then_some(&mut shown.image)?;
                 image.finish(finding, &mut self.settings.image)
             }
-            Ok(TaskResult::Opened { name, stage }) => {
-                self.look_at(Source::file(&name, *stage));
+            Ok(TaskResult::Opened { name, playable }) => {
+                self.look_at(Source::file(&name, *playable));
                 None
             }
             Err(problem) => Some(Err(problem)),
@@ -349,8 +349,8 @@ impl Viewer {
         let Source { origin, status, .. } = &mut self.source;
         let problem = match origin {
             Origin::File(_) => {
-                "A file of paths has no daemon whose chains could be steered or explored; open the \
-                 scene itself with `viewer-client --scene SCENE`."
+                "A file of paths has no daemon with chains to steer or explore; open the scene \
+                itself with `viewer-client --scene SCENE`."
             }
             Origin::Nothing => "There is no daemon to steer; connect to one first.",
             Origin::Daemon(daemon) => {
@@ -359,7 +359,7 @@ impl Viewer {
                     status.steering.focus.scrub = None;
                 }
                 if !daemon.order(order) {
-                    let problem = "not sent: there is no connection".to_owned();
+                    let problem = "it was not sent, because there is no connection".to_owned();
                     status.steering.remark(Err(problem));
                 }
                 return;
