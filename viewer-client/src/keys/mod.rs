@@ -191,8 +191,7 @@ const BINDINGS: &[Binding] = &[
         plain(Key::C),
         Paths,
         |w| next(w, &CloudSettings::color()),
-        "colour paths by the next \
-        property",
+        "colour paths by the next property",
     ),
     find(
         plain(Key::M),

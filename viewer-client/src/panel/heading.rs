@@ -60,13 +60,8 @@ fn menu(
     };
     let dots = Button::new(RichText::new("…").weak()).frame(false);
     let (response, shown) = MenuButton::from_button(dots).ui(ui, |ui| {
-        let copy = ui
-            .button("Copy as text")
-            .on_hover_text(
-                "Or press Ctrl+C over the \
-            section",
-            )
-            .clicked();
+        let copy =
+            ui.button("Copy as text").on_hover_text("Or press Ctrl+C over the section").clicked();
         ui.separator();
         for (label, step) in [("Move up", Move::Up), ("Move down", Move::Down), other] {
             if ui.button(label).clicked() {

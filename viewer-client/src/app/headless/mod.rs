@@ -80,10 +80,8 @@ impl OffscreenWindow {
             .block_on(graphics(wgpu::Backends::PRIMARY))
             .or_else(|_| runtime.block_on(graphics(wgpu::Backends::GL)));
         window::told_by_drivers(&quiet.end());
-        let gpu = gpu.context(
-            "no graphics driver was found; on Debian, install \
-            mesa-vulkan-drivers",
-        )?;
+        let gpu =
+            gpu.context("no graphics driver was found; on Debian, install mesa-vulkan-drivers")?;
         let size = within(size, &gpu);
         let ctx = egui::Context::default();
         Viewer::install(&ctx, &gpu, quality(&gpu));

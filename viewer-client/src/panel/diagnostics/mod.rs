@@ -159,19 +159,16 @@ fn verdict(ui: &mut Ui, world: &World<'_>, diagnostics: &Diagnostics, commands: 
         return;
     }
     ui.horizontal(|ui| {
-        let map = ui.button("Show where").on_hover_text(
-            "Show the map of disagreement on the \
-            image",
-        );
+        let map =
+            ui.button("Show where").on_hover_text("Show the map of disagreement on the image");
         if map.clicked() {
             commands.push(Command::Image(ImageCommand::Show(Layer::Disagreement)));
             reveal(ui, PanelName::Image, world, commands);
         }
         let Some(worst) = worst else { return };
-        let paths = ui.button("Paths to the worst tile").on_hover_text(
-            "Show only the paths to \
-            the tile with the largest R-hat",
-        );
+        let paths = ui
+            .button("Paths to the worst tile")
+            .on_hover_text("Show only the paths to the tile with the largest R-hat");
         if paths.clicked() && world.film.size() != [0, 0] {
             let region = region_of(diagnostics, worst.tile, world.film.size());
             let text = region::with_region(world.settings.filter.text(), Some(region));

@@ -24,8 +24,7 @@ pub(super) fn show(
         for (title, tip) in [
             (
                 "steps",
-                "How many steps a chain stayed here, because every proposal was rejected or \
-                failed",
+                "How many steps a chain stayed here, because every proposal was rejected or failed",
             ),
             ("path", "The path's class: light, specular, diffuse, eye, starting at the light"),
             ("made by", "The strategy that proposed it"),

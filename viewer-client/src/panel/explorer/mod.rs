@@ -147,10 +147,7 @@ fn seed(ui: &mut Ui, world: &World<'_>, order: &mut impl FnMut(ExplorerCommand))
         }
         if ui
             .button("Newest")
-            .on_hover_text(
-                "Start the explorer from the path that arrived \
-            last",
-            )
+            .on_hover_text("Start the explorer from the path that arrived last")
             .clicked()
         {
             order(ExplorerCommand::Seed(Seed::Newest));
@@ -249,10 +246,8 @@ fn allowed(
             }
             dot(ui, theme::strategy_color(index));
             let button = Button::selectable(is_in, RichText::new(name).small());
-            let response = ui.add(button).on_hover_text(
-                "Whether the explorer may use this \
-                strategy",
-            );
+            let response =
+                ui.add(button).on_hover_text("Whether the explorer may use this strategy");
             if response.contains_pointer() {
                 hover::point(ui.ctx(), Pointed::Strategy(index));
             }

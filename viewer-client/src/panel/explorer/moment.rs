@@ -138,8 +138,7 @@ fn factors(ui: &mut Ui, moment: &Moment) {
         (
             "Q(y | x)",
             number(f.forward),
-            "Density of proposing y from x, divided by the luminance \
-            of y",
+            "Density of proposing y from x, divided by the luminance of y",
         ),
         ("Q(x | y)", number(f.backward), "The same for the reverse move"),
     ];

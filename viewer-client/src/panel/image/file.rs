@@ -79,8 +79,7 @@ impl Files {
         } else {
             let size = format!("{} × {}", reference.width, reference.height);
             ui.label(format!(
-                "It has {size} pixels, unlike the image; render it at the size of \
-                the image."
+                "It has {size} pixels, unlike the image; render it at the size of the image."
             ));
         }
     }

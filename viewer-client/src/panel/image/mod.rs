@@ -263,10 +263,8 @@ fn tone(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
 fn zoom(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     let zoom = world.settings.image.zoom;
     ui.horizontal(|ui| {
-        let fit = ui.selectable_label(zoom.is_none(), "Fit").on_hover_text(
-            "Fit the image to the \
-            panel",
-        );
+        let fit =
+            ui.selectable_label(zoom.is_none(), "Fit").on_hover_text("Fit the image to the panel");
         if fit.clicked() {
             commands.push(Command::Image(ImageCommand::Fit));
         }

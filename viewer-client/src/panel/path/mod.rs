@@ -154,8 +154,7 @@ fn figures(ui: &mut Ui, world: &World<'_>, path: Described<'_>) {
         (
             "Length",
             format!("{length:.4}"),
-            "Total length of all edges, in the units of the scene \
-            file",
+            "Total length of all edges, in the units of the scene file",
         ),
     ];
     for (label, value, tip) in lines {

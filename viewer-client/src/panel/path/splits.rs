@@ -79,8 +79,7 @@ fn explain(ui: &mut Ui, detail: &PathDetail, light: usize) {
     ui.label(match light {
         0 => "The walk from the eye hits the light".to_owned(),
         light if light == k => {
-            "Everything but the lens is generated from the light, then connected to the \
-            lens"
+            "Everything but the lens is generated from the light, then connected to the lens"
                 .to_owned()
         }
         light => {

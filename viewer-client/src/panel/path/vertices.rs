@@ -117,7 +117,7 @@ fn places(ui: &mut Ui, path: Described<'_>, commands: &mut Vec<Command>) {
     let positions = triples(&rows, 3);
     Grid::new("places").num_columns(4).striped(true).spacing([10.0, 3.0]).show(ui, |ui| {
         title(ui, "", "");
-        title(ui, "event", "The material that scatters the light there");
+        title(ui, "event", "How the light is scattered there");
         title(ui, "on", "The object or, if it has no name, the material");
         title(ui, "position", "x, y and z in the units of the scene file");
         ui.end_row();
@@ -162,7 +162,7 @@ fn card(ui: &mut Ui, path: Described<'_>, index: usize) {
     let mut lines: Vec<Line> = vec![
         ("Position", next(), "In the units of the scene file"),
         ("Normal", next(), "Geometric unit normal on the front side"),
-        ("Event", vertex.event.name().to_owned(), "The material that scatters the light"),
+        ("Event", vertex.event.name().to_owned(), "How the light is scattered"),
         ("Material", names.material(vertex).to_owned(), "Its name in the scene file"),
         ("Object", names.object(vertex).unwrap_or("–").to_owned(), "Its name in the scene file"),
     ];

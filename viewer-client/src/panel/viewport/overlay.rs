@@ -72,11 +72,7 @@ fn nothing_yet(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
         }
         LinkState::Connecting => (
             format!("Connecting to {} …", status.address),
-            vec![
-                "This may take a \
-                moment."
-                    .to_owned(),
-            ],
+            vec!["This may take a moment.".to_owned()],
         ),
         LinkState::Connected => {
             ("Connected".to_owned(), vec!["Receiving the scene ...".to_owned()])
