@@ -94,6 +94,7 @@ fn a_command_that_cannot_be_followed_is_a_failure() {
     run.fails("`a.bmp` has no known extension");
     assert!(is_picture(&run.path("picture.png")), "the picture is written all the same");
     Run::of("image reference gone.exr\n").fails("gone.exr");
+    Run::of("filter set any on object \"heffalump\"\n").fails("The filter is left out");
     let typo = Run::of("image sve a.exr\n");
     assert_eq!(typo.code(), Some(2), "wrong usage: {}", typo.log());
     assert!(typo.log().contains("script, line 1"), "{}", typo.log());
