@@ -44,7 +44,7 @@ async fn is_let_in(peer: &Peer) {
     session.leave().await;
 }
 
-/// The complaint of whoever is not let in.
+/// The error of a viewer that is not let in.
 async fn is_kept_out(peer: &Peer) -> SessionError {
     fixture::soon("the refusal", Session::open(peer, Greeting::default()))
         .await

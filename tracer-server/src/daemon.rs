@@ -75,7 +75,7 @@ pub struct Daemon {
 }
 
 impl Daemon {
-    /// Starts the chains of `scene`, and shows them to whoever connects.
+    /// Starts the chains of `scene`, and shows them to the viewers that connect.
     pub fn start(scene: Arc<Scene>, options: &DaemonOptions) -> Result<Self, DaemonError> {
         let info = session_info(&scene, &options.ensemble);
         let (steering, orders) = steering::channel();

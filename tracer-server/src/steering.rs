@@ -8,7 +8,7 @@ use thiserror::Error;
 /// Orders that may wait for the explorer, and as many for the chains.
 const WAITING: usize = 64;
 
-/// An order, with whoever gave it.
+/// An order, with its author.
 #[derive(Clone, Debug)]
 pub struct Envelope<C> {
     /// Whoever gave it.

@@ -132,7 +132,7 @@ impl Writer {
     }
 }
 
-/// Each write is a text; for whoever formats.
+/// Each write is a text; for use by formatters.
 impl Write for Writer {
     fn write(&mut self, text: &[u8]) -> io::Result<usize> {
         self.say(text);

@@ -47,7 +47,7 @@ pub struct VertexRecord {
 /// What a record says about its path in addition to the vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PathHeader {
-    /// Names the path for ever.
+    /// Identifies the path permanently.
     pub id: PathId,
     /// The strategy whose proposal made it; [`Self::NO_STRATEGY`] for a seed.
     pub strategy: StrategyId,

@@ -76,7 +76,7 @@ pub enum LeaseEvent {
     Asked,
 }
 
-/// Where a viewer looks from, if it wishes to show that.
+/// Where a viewer looks from, if it shares that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Gaze {
     /// The eye, in scene units.

@@ -16,7 +16,7 @@ use crate::service::{Access, Certificate, MAX_TOKEN_LENGTH, Security, Token};
 /// No certificate or key is longer, in bytes.
 const MAX_PEM_BYTES: u64 = 1 << 20;
 
-/// Where to listen, and what to ask of whoever connects.
+/// Where to listen, and what to require of those who connect.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Connections")]
 pub struct AccessArgs {
@@ -26,7 +26,7 @@ pub struct AccessArgs {
     /// token and for encryption.
     #[arg(long, value_name = "HOST:PORT", default_value_t = DEFAULT_ADDRESS, value_parser = listen)]
     pub listen: SocketAddr,
-    /// File with the token that viewers must show; whoever has it may steer.
+    /// File with the token that viewers must present; anyone who has it may steer.
     #[arg(long, value_name = "FILE")]
     pub token_file: Option<PathBuf>,
     /// File with a second token, for viewers that may only watch.

@@ -179,7 +179,7 @@ pub fn of_scene(settings: &[StrategySetting]) -> anyhow::Result<StrategyOptions>
 }
 
 impl ChainArgs {
-    /// Refuses options that `integrator` would not heed.
+    /// Rejects options that `integrator` would ignore.
     pub fn check(&self, integrator: IntegratorName) -> anyhow::Result<()> {
         let StrategyArgs { strategies, without, tune, adapt } = &self.strategies;
         let has_chains = matches!(integrator, IntegratorName::Mlt | IntegratorName::Pssmlt);
@@ -214,7 +214,7 @@ impl ChainArgs {
         Ok(EnsembleSettings { chains: self.chains.unwrap_or(CHAINS_OF_A_PICTURE), ..ensemble })
     }
 
-    /// The settings of the chains on `scene`, of whose file `settings` are the wishes.
+    /// The settings of the chains on `scene`, whose file asks for `settings`.
     pub fn ensemble(
         &self,
         scene: &Scene,

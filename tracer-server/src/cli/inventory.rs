@@ -10,7 +10,7 @@ use crate::bsdf::{Bsdf, BsdfDescription, Inputs as _, Value};
 use crate::scene::load::Loaded;
 use crate::scene::{Material, Mesh, Scene, SceneDescription};
 
-/// Everything that is told about a scene; lengths in the units of its file.
+/// Everything that is reported about a scene; lengths in the units of its file.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Inventory {
     /// The scene's name.

@@ -17,7 +17,7 @@ use crate::daemon::{Daemon, DaemonOptions};
 /// Traces a scene continuously, and streams paths and image to viewers.
 ///
 /// Prints `listening on ADDR:PORT` when viewers may connect. Ctrl-C, SIGTERM and the end of its terminal
-/// end it; viewers that are connected are told. Under `nohup` it outlives its terminal.
+/// end it, and connected viewers are notified. Under `nohup` it outlives its terminal.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "\
 Examples:
@@ -41,7 +41,7 @@ pub struct ServeArgs {
     pub film: FilmSize,
 }
 
-/// Serves until it is told to stop.
+/// Serves until a signal stops it.
 pub fn run(args: &ServeArgs) -> anyhow::Result<ExitCode> {
     let security = args.door.security()?;
     let (scene, wishes) = input::scene(&args.scene, args.film)?;

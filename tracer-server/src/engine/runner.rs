@@ -189,9 +189,9 @@ impl<'a> ChainRunner<'a> {
         };
         *slot = weight;
         if !weights.iter().any(|&weight| weight > 0.0) {
-            return Err("no strategy would be left; give another one a positive weight \
-                first"
-                .to_owned());
+            return Err(
+                "no strategy would be left; give another one a positive weight first".to_owned()
+            );
         }
         self.epoch += 1;
         self.ensemble.begin_epoch(self.epoch, &weights);
@@ -203,7 +203,7 @@ impl<'a> ChainRunner<'a> {
     fn restart(&mut self, change: String, author: &Author) -> String {
         let state = ChainState {
             running: false,
-            change: "starts anew".to_owned(),
+            change: "is restarting".to_owned(),
             by: Some(author.clone()),
             ..self.state()
         };

@@ -32,7 +32,7 @@ use walker::{Progress, Walker};
 const BURST: u32 = 20;
 /// See [`BURST`].
 const REST: Duration = Duration::from_millis(1);
-/// A skip that has not found what it looks for ends after so many steps.
+/// A skip that has not reached its goal ends after this many steps.
 const LONGEST_SKIP: u64 = 1_000_000;
 /// Steps that are made up for after the thread was late.
 const MOST_DUE: u32 = 64;
@@ -94,7 +94,7 @@ enum Motion {
     Paused,
     /// The next step is due then.
     Playing(Instant),
-    /// Until the goal is reached, or so many steps are taken.
+    /// Until the goal is reached, or this many steps are taken.
     Skipping(Goal, u64),
 }
 

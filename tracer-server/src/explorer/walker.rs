@@ -132,8 +132,7 @@ impl Walker {
             let known = self.memory.iter().find(|checkpoint| checkpoint.id() == id);
             let (checkpoint, walk) = known.zip(self.walk.as_ref()).ok_or_else(|| {
                 format!(
-                    "the path {id} is no longer stored: the explorer keeps its last {MEMORY} \
-                    paths"
+                    "the path {id} is no longer stored: the explorer keeps its last {MEMORY} paths"
                 )
             })?;
             let chain = Chain::resume(&scene, checkpoint, &walk.kernel)

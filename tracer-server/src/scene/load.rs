@@ -145,7 +145,7 @@ fn notes(warnings: &[Warning]) -> String {
     notes.concat()
 }
 
-/// Validates what was read; problems and repairs are told with their place.
+/// Validates what was read; problems and repairs are reported with their place.
 fn check(read: Read) -> Result<Loaded, LoadError> {
     let Read { mut description, origins, mut warnings, strategies } = read;
     let names: Vec<String> = description.meshes.iter().map(|mesh| mesh.name.clone()).collect();

@@ -15,7 +15,7 @@ use tokio_stream::Stream;
 use tonic::transport::server::{Connected, TcpConnectInfo, TlsConnectInfo};
 use tonic::{Extensions, Status};
 
-/// Connections at a time: viewers, tools and whoever is refused.
+/// Connections at a time: viewers, tools and those that are rejected.
 pub(super) const MAX_CONNECTIONS: usize = 128;
 /// Connections beyond the limit that are still told that the daemon is full; any others are just closed.
 const MAX_SURPLUS: usize = 16;

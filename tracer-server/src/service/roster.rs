@@ -105,7 +105,7 @@ impl Roster {
         Entry { role, resume, filter, focus }
     }
 
-    /// Lets a viewer go. Its lease goes to whoever has asked longest.
+    /// Removes a viewer. Its lease goes to the viewer that asked first.
     pub(super) fn leave(&self, session: u64) {
         let mut state = self.state();
         state.asking.retain(|&asking| asking != session);
@@ -137,8 +137,7 @@ impl Roster {
                 "only the driver can give orders, and that is {} (session {}): ask for the lease",
                 driver.author.name, driver.author.session
             ),
-            None => "only the driver can give orders, and nobody is driving: ask for the \
-                lease"
+            None => "only the driver can give orders, and nobody is driving: ask for the lease"
                 .to_owned(),
         })
     }
@@ -235,7 +234,7 @@ impl Roster {
         state.absent.remove(found).map(|absent| absent.memory)
     }
 
-    /// Gives a free lease to whoever has asked longest.
+    /// Gives a free lease to the viewer that asked first.
     fn pass_on(&self, state: &mut State) {
         if let Some(next) = state.asking.front().copied() {
             self.grant(state, next, None);
@@ -294,8 +293,7 @@ fn secret() -> String {
     let mut bytes = [0; RESUME_BYTES];
     if SystemRandom::new().fill(&mut bytes).is_err() {
         tracing::warn!(
-            "the system provides no random numbers: viewers cannot resume their \
-            sessions"
+            "the system provides no random numbers: viewers cannot resume their sessions"
         );
         return String::new();
     }

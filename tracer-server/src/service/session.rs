@@ -284,9 +284,10 @@ impl Session {
                 return;
             }
             Some(order) => self.hand_on(request, order),
-            None => Err("this daemon does not know that order; it may be older than the \
-                viewer"
-                .to_owned()),
+            None => {
+                Err("this daemon does not know that order; it may be older than the viewer"
+                    .to_owned())
+            }
         };
         if let Err(error) = done {
             self.reply(request, Some(error));

@@ -77,7 +77,7 @@ impl Playback {
         self.rate
     }
 
-    /// What the step changed; `None` for a seed, and for a proposal of which no path is told.
+    /// What the step changed; `None` for a seed, and for a proposal without a known path.
     pub fn moment(&self) -> Option<&Moment> {
         self.moment.as_ref()
     }

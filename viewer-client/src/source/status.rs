@@ -75,7 +75,7 @@ pub struct Status {
     failures: Vec<String>,
 }
 
-/// Failures that are kept for whoever asks.
+/// Failures that have not been collected yet.
 const MOST_FAILURES: usize = 64;
 
 /// A daemon that says nothing for so long does not answer.
@@ -169,7 +169,7 @@ impl Status {
         self.notice = Some(Notice { text, is_bad, at: Instant::now() });
     }
 
-    /// What went wrong since this was asked last: for whoever has no window to read notices in.
+    /// What went wrong since the last call, for use without a window.
     pub fn take_failures(&mut self) -> Vec<String> {
         std::mem::take(&mut self.failures)
     }

@@ -32,7 +32,7 @@ impl<T: Copy> Range<T> {
         Self { logarithmic: true, ..self }
     }
 
-    /// With so many decimals.
+    /// With this many decimals.
     #[must_use]
     pub const fn decimals(self, decimals: usize) -> Self {
         Self { decimals, ..self }

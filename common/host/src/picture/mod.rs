@@ -36,8 +36,7 @@ pub enum PictureError {
     },
     /// There is no picture in it, or more than one.
     #[error(
-        "`{file}` has {what} among its channels {channels}; name the picture's channels R, G \
-        and B"
+        "`{file}` has {what} among its channels {channels}; name the picture's channels R, G and B"
     )]
     Channels {
         /// The file.
@@ -187,7 +186,7 @@ pub struct Plane {
     pub values: Vec<f32>,
 }
 
-/// What a file holds beside the picture.
+/// What a file holds in addition to the picture.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extras<'a> {
     /// Channels of their own.

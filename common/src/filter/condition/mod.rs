@@ -83,7 +83,7 @@ pub trait Form {
 pub struct NumberPart {
     /// What it says.
     pub about: &'static str,
-    /// The least value that makes sense beside its neighbours.
+    /// The least value that makes sense given its neighbours.
     pub least: f64,
     /// The largest.
     pub most: f64,

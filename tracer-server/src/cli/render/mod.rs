@@ -36,7 +36,7 @@ use report::{metadata, print, work};
 
 /// Mutations, or samples, for each pixel unless the user says otherwise.
 const DEFAULT_PER_PIXEL: u64 = 256;
-/// How long the end waits for whoever reads the report.
+/// How long the end of the program waits for the reader of the report.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Renders one image, and prints a table of what the chains did.
@@ -104,7 +104,7 @@ pub struct PrimaryArgs {
     /// The renderer whose random numbers `--integrator pssmlt` moves [default: bdpt].
     #[arg(long, value_enum, value_name = "RENDERER")]
     pub primary_sampler: Option<PrimarySamplerName>,
-    /// Share of the steps of `--integrator pssmlt` that draw all numbers anew [default: 0.3].
+    /// Share of the steps of `--integrator pssmlt` that draw all numbers afresh [default: 0.3].
     #[arg(long, value_name = "SHARE", value_parser = share)]
     pub large_step: Option<f64>,
 }

@@ -129,8 +129,7 @@ fn print_replicates(out: &mut impl Write, report: &Report) -> io::Result<()> {
                 (0, _) => "chains would not pay off, so there are none".to_owned(),
                 (n, false) => format!("{n} chains in each replicate"),
                 (n, true) => format!(
-                    "{n} chains in each replicate, which visit dark parts as often as \
-                        bright ones"
+                    "{n} chains in each replicate, which visit dark parts as often as bright ones"
                 ),
             },
         )?;

@@ -11,7 +11,7 @@ use crate::scene::reading::diagnostic::{LoadError, Place, Warning};
 
 /// The most nodes of a document that are read.
 const MAX_NODES: u32 = 4_000_000;
-/// How many unread elements are told one by one.
+/// How many unread elements are reported one by one.
 const MAX_TOLD: usize = 50;
 /// The most names that a message lists.
 const MAX_NAMES: usize = 30;

@@ -25,10 +25,9 @@ pub(super) fn read(
             intensity: color(emitter, "intensity")?,
         },
         "spot" => {
-            warnings.push(emitter.warning(
-                "its intensity falls off smoothly with the cosine of \
-                the angle",
-            ));
+            warnings.push(
+                emitter.warning("its intensity falls off smoothly with the cosine of the angle"),
+            );
             let cutoff = emitter.number("cutoff_angle")?.unwrap_or(DEFAULT_CUTOFF);
             LightKind::Spot {
                 position: place,

@@ -111,10 +111,8 @@ impl MtlEntry {
             return true;
         }
         if opacity < 1.0 {
-            notes.push(format!(
-                "partial transparency is not supported; d {opacity} becomes \
-                opaque"
-            ));
+            notes
+                .push(format!("partial transparency is not supported; d {opacity} becomes opaque"));
         }
         false
     }
@@ -124,8 +122,7 @@ impl MtlEntry {
             Some(eta) if eta > 0.0 => eta,
             _ => {
                 notes.push(format!(
-                    "transparent without an index of refraction Ni; {GLASS} is \
-                    used"
+                    "transparent without an index of refraction Ni; {GLASS} is used"
                 ));
                 GLASS
             }
@@ -167,10 +164,8 @@ impl MtlEntry {
         let base_is_black = is_metal || diffuse.max_channel() < DARK_BASE * lobe.max_channel();
         if base_is_black && !is_metal && !diffuse.is_black() {
             let lost = show(diffuse);
-            notes.push(format!(
-                "Kd {lost} is negligible next to such a reflection and was \
-                ignored"
-            ));
+            notes
+                .push(format!("Kd {lost} is negligible next to such a reflection and was ignored"));
         }
         let fresnel = match self.illumination {
             Some(3 | 8) => Fresnel::Constant(lobe),

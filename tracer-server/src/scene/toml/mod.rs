@@ -205,10 +205,8 @@ impl Read {
         let name = &material.name;
         if let Some(before) = self.index_of(name) {
             let before = self.origins.of(Part::Material(before), "name");
-            let message = format!(
-                "material `{name}` is already defined at {before}; rename one \
-                of them"
-            );
+            let message =
+                format!("material `{name}` is already defined at {before}; rename one of them");
             return Err(self.error(&place, "name", message));
         }
         let (bsdf, warnings) = material.bsdf(self).map_err(|Fault { field, message }| {

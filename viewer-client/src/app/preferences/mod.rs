@@ -194,7 +194,7 @@ fn worth_it(commands: Vec<Command>) -> impl Iterator<Item = (&'static str, Comma
     kept.filter(|(form, _)| form.is(Trait::Kept)).map(|(form, command)| (form.words, command))
 }
 
-/// The entries of the map `key`; those that make no sense are told and left out.
+/// The entries of the map `key`; invalid ones are reported and left out.
 fn entries<T: DeserializeOwned>(
     content: &Value,
     key: &str,
@@ -216,7 +216,7 @@ fn entries<T: DeserializeOwned>(
     read.collect()
 }
 
-/// What `T` makes of an object, but for keys whose values make no sense, which are told.
+/// What `T` reads from an object, except for keys with invalid values, which are reported.
 fn by_key<T: Default + DeserializeOwned + Serialize>(
     object: &Value,
     place: &str,

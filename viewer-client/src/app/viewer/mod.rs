@@ -156,7 +156,7 @@ impl Viewer {
         &self.source.status
     }
 
-    /// What went wrong since this was asked last: for whoever has no window to read it in.
+    /// What went wrong since the last call, for use without a window.
     pub fn take_failures(&mut self) -> Vec<String> {
         self.source.status.take_failures()
     }
@@ -319,7 +319,7 @@ impl Viewer {
         }
     }
 
-    /// Shows the others where this viewer looks, if the user wishes.
+    /// Shows the others where this viewer looks, if the user shares that.
     fn appear(&mut self) {
         let Self { settings, source: Source { origin, status, shown, .. }, .. } = self;
         let Origin::Daemon(daemon) = origin else { return };

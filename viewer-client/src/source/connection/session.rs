@@ -23,7 +23,7 @@ use super::tls;
 const WINDOW_BYTES: u32 = 4 << 20;
 /// A daemon that takes longer to answer is not there.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(5);
-/// A daemon greets whoever says hello within moments.
+/// A daemon answers a hello within moments.
 const GREETING_TIMEOUT: Duration = Duration::from_secs(10);
 /// A silent daemon is asked this often whether it lives.
 const PING_INTERVAL: Duration = Duration::from_secs(10);
@@ -203,7 +203,7 @@ async fn explain(peer: &Peer, reason: Option<String>) -> SessionError {
     SessionError::Unreachable(text)
 }
 
-/// Fetches the scene beside a running session.
+/// Fetches the scene while a session is running.
 #[derive(Debug)]
 pub struct SceneFetcher {
     client: Client,

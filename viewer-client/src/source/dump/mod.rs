@@ -69,7 +69,7 @@ pub struct DumpVertex {
     pub kind: VertexKind,
     /// The lobe that scattered here.
     pub event: Event,
-    /// The shape that it lies on, or what stands there.
+    /// The shape that it lies on, or the text in its place.
     pub shape: String,
     /// How it was made.
     pub numbers: Numbers,

@@ -10,7 +10,7 @@ use super::{Dump, Fault, Numbers, Outcome, Record, Step};
 
 /// Formal vertices, one at each end.
 const FORMAL: usize = 2;
-/// Faults that are told one by one; the others are counted.
+/// Faults that are reported one by one; the others are counted.
 const MOST_TOLD: usize = 10;
 
 /// What the lines so far have made.
@@ -32,7 +32,7 @@ pub(super) struct Parser {
     foreign: usize,
     /// The first thing that is wrong.
     fault: Option<Fault>,
-    /// Faults beyond those that are told.
+    /// Faults beyond those that are reported.
     more_faults: usize,
 }
 
