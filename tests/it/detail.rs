@@ -137,7 +137,7 @@ async fn a_path_that_is_gone_says_so_and_questions_do_not_pile_up() {
     assert!(never.contains("there is no path"), "{never}");
     let lost = PathId { chain: ChainId::EXPLORER, epoch: 9, step: 1 };
     let lost = ask(&mut session, lost).await.expect_err("the explorer was nowhere");
-    assert!(lost.contains("is gone"), "{lost}");
+    assert!(lost.contains("no longer stored"), "{lost}");
     // Somebody who asks without end is heard one question at a time, and the chains go on.
     let mut sent = 0;
     while session.say(ViewerEvent::Inspect(id)) {

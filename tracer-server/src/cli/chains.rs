@@ -301,9 +301,9 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named() {
         for (line, words) in [
-            ("--strategies lenses", "`lenses`; the strategies: bidirectional"),
+            ("--strategies lenses", "`lenses`; the strategies are bidirectional"),
             ("--without lenses", "--without: there is no strategy"),
-            ("--strategies lens=much", "`much` is no number"),
+            ("--strategies lens=much", "`much` is not a number"),
             ("--tune lens=3", "NAME.PARAMETER=VALUE"),
             ("--tune lens.radius=3..2", "MIN below MAX"),
             ("--strategies lens=0", "no strategy is left"),

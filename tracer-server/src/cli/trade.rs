@@ -388,7 +388,7 @@ mod tests {
     fn what_is_wrong_with_a_setting_is_named() {
         for (setting, words) in [
             ("plain", "NAME=OPTIONS"),
-            ("a/b=", "no name"),
+            ("a/b=", "not a valid name"),
             ("a=--seed 3", "applies to all settings"),
             ("a=--threads=3", "applies to all settings"),
             ("a=--integrator magic", "possible values"),

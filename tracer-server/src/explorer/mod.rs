@@ -181,7 +181,7 @@ impl ExplorerLoop {
 
     fn carry_out(&mut self, command: ExplorerCommand) -> Result<(), String> {
         if !self.walker.is_seeded() && !matches!(command, ExplorerCommand::Seed(_)) {
-            return Err("the explorer has no path yet: give it one first".to_owned());
+            return Err("the explorer has no path yet: seed it with one first".to_owned());
         }
         match command {
             ExplorerCommand::Seed(seed) => {

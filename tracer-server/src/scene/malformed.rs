@@ -108,7 +108,7 @@ fn every_mistake_in_a_toml_scene_is_located() {
         ("origin = [0, 0, 5]", "origin = \"here\"", "8", "string"),
         ("vertical_fov = 30", "vertical_fov = 180", "7", "180"),
         ("vertical_fov = 30", "", "7", "missing field `vertical_fov`"),
-        ("material = \"lamp\"", "material = \"lmap\"", "25", "the materials: lamp, glass"),
+        ("material = \"lamp\"", "material = \"lmap\"", "25", "the materials are lamp, glass"),
         ("material = \"lamp\"", "", "24", "has no material"),
         ("[[0, 1, 2]]", "[[0, 1, 3]]", "27", "refers to position 3"),
         ("[[0, 1, 2]]", "[[0, 1, -2]]", "27", "-2"),
@@ -132,7 +132,7 @@ fn every_mistake_in_a_toml_scene_is_located() {
 #[test]
 fn every_mistake_in_a_material_is_located() {
     let cases = [
-        ("\"lambert\"", "\"phong\"", "14", "no model `phong`; the models: lambert, mirror"),
+        ("\"lambert\"", "\"phong\"", "14", "no model `phong`; the models are lambert, mirror"),
         ("[0.5, 0.5, 0.5]", "[0.5, 1.5, 0.5]", "15", "material `lamp`, reflectance"),
         ("[0.5, 0.5, 0.5]", "[0.5, -0.1, 0.5]", "15", "[0, 1]"),
         ("[0.5, 0.5, 0.5]", "[0.5, 0.5]", "15", "a number, three numbers"),
@@ -456,7 +456,7 @@ fn bad_lights_and_lenses_are_refused() {
     }
     let two = lit_by("environment = {}\n[[lights]]\nname = \"second\"\nenvironment = {}");
     let message = load_text("two.toml", two).expect_err("refused");
-    assert!(message.contains("one only") && message.contains("second"), "{message}");
+    assert!(message.contains("only one") && message.contains("second"), "{message}");
     let lens = GOOD.replace("vertical_fov = 30", "vertical_fov = 30\nlens_radius = 0");
     let message = load_text("lens.toml", lens).expect_err("refused");
     assert!(message.contains("lens_radius") && message.contains("positive"), "{message}");

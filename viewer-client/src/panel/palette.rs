@@ -165,7 +165,7 @@ mod tests {
     fn keys_and_whole_commands_are_found_by_typing() {
         let closed = || Command::Window(WindowCommand::Palette(Switch::Off));
         let clear = Command::Cloud(CloudCommand::Clear);
-        assert_eq!(typed("FORGET path"), [closed(), clear], "a key by words of its meaning");
+        assert_eq!(typed("REMOVE path"), [closed(), clear], "a key by words of its meaning");
         let width = Command::Cloud(CloudCommand::Width(3.0));
         assert_eq!(typed("cloud width 3"), [closed(), width], "a command as it is");
         assert_eq!(typed("width of the lines"), [], "a form waits for its parameters");

@@ -90,7 +90,7 @@ fn what_is_pointed_at_is_marked_elsewhere() {
     harness.get_by_label("DDD").hover();
     harness.run_steps(40);
     assert_eq!(hover::pointed(&harness.ctx), Some(Pointed::Stay(0)), "a long stay");
-    assert!(shows(&harness, "marked in the view"), "the tooltip says so");
+    assert!(shows(&harness, "highlighted in the view"), "the tooltip says so");
     harness.get_by_label("lens").hover();
     harness.run_steps(3);
     assert_eq!(hover::pointed(&harness.ctx), Some(Pointed::Strategy(1)), "a strategy");

@@ -92,7 +92,7 @@ fn numbers_that_are_not_there_are_explained() {
     assert!(shows(&gone, "position"), "there is nothing else to show");
     let mut asked = path_panel(Detail::Asked(Instant::now()));
     asked.run_steps(3);
-    assert!(shows(&asked, "The daemon is asked"), "on their way");
+    assert!(shows(&asked, "Waiting for the daemon"), "on their way");
     let long_ago = Instant::now().checked_sub(Duration::from_mins(1)).expect("a minute ago");
     let mut silent = path_panel(Detail::Asked(long_ago));
     silent.run();

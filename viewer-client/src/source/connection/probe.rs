@@ -118,11 +118,11 @@ mod tests {
             (peer(b"SSH-2.0-OpenSSH_9.6\r\n", b""), "is an SSH server"),
             (peer(b"", b"HTTP/1.1 400 Bad Request\r\n\r\n"), "is a web server"),
             (peer(b"", b"<!DOCTYPE HTML>\n"), "is a web server"),
-            (peer(b"", alert), "encrypts: give the fingerprint"),
+            (peer(b"", alert), "uses encryption: give the fingerprint"),
             (peer(b"220 mail ESMTP\r\n", b""), "is something else"),
             (peer(b"", b""), "closes the connection at once"),
             (gone, "nobody listens at 127.0.0.1:"),
-            ("no-such-host.invalid:50061".to_owned(), "no way to no-such-host.invalid:50061"),
+            ("no-such-host.invalid:50061".to_owned(), "cannot reach no-such-host.invalid:50061"),
         ] {
             let complaint = complaint(address).await;
             assert!(complaint.contains(words), "{words}: {complaint}");

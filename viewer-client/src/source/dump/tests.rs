@@ -250,7 +250,7 @@ fn faults_name_their_line() {
         ("Vertex 2 =>", "Vertex 3 =>", 24, "Vertex 2"),
         ("type = emitterSample", "type = teapot", 70, "`teapot`"),
         ("type = emitterSample", "type = emitterSupernode", 70, "emitterSample"),
-        ("componentType = 32", "componentType = x", 42, "is no number"),
+        ("componentType = 32", "componentType = x", 42, "is not a number"),
         ("Path[", "# step=1 rejected mut=lens\nPath[", 1, "`a=A`"),
         ("Path[", "# step=1 failed mut=lens\nPath[", 1, "begins with a seed"),
         ("Path[", "# seed chain=x step=0\nPath[", 1, "`chain=x`"),
