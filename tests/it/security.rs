@@ -87,7 +87,10 @@ async fn plain_speech_is_not_understood_and_tokens_stay_secret() {
     let (server, _) = guarded();
     let plain = peer(&server, Trust::Plain, DRIVER);
     let complaint = is_kept_out(&plain).await.to_string();
-    assert!(complaint.contains("uses encryption") && complaint.contains("--fingerprint"), "{complaint}");
+    assert!(
+        complaint.contains("uses encryption") && complaint.contains("--fingerprint"),
+        "{complaint}"
+    );
     let elsewhere = Peer { address: "192.0.2.1:1".to_owned(), ..plain };
     let complaint = is_kept_out(&elsewhere).await;
     assert!(matches!(complaint, SessionError::ExposedToken(_)), "{complaint}");
