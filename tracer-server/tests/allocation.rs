@@ -63,7 +63,8 @@ fn mixtures() -> Vec<(&'static str, StrategyOptions)> {
 
 fn advance(
     chains: &mut [Chain],
-    (tracer, ensemble): (&Tracer<'_>, &Ensemble),
+    tracer: &Tracer<'_>,
+    ensemble: &Ensemble,
     film: &mut Film,
     steps: u64,
 ) {
@@ -98,9 +99,9 @@ fn count(scene: &Scene, strategies: &StrategyOptions) -> (usize, u64) {
     }
     let tracer = Tracer::new(scene);
     let mut film = Film::new(scene.camera().width, scene.camera().height);
-    advance(&mut chains, (&tracer, &ensemble), &mut film, WARM_UP);
+    advance(&mut chains, &tracer, &ensemble, &mut film, WARM_UP);
     let region = Region::new(ALLOCATOR);
-    advance(&mut chains, (&tracer, &ensemble), &mut film, STEPS);
+    advance(&mut chains, &tracer, &ensemble, &mut film, STEPS);
     let change = region.change();
     let splats = film.total_luminance() / (WARM_UP + STEPS) as f64;
     assert!((splats - 1.0).abs() < 1e-9, "every step must be on the film, not {splats} of them");

@@ -9,7 +9,7 @@ use common::{Author, ChainCommand, ChainState, OrderReply, StrategyId};
 use tracing::{info, warn};
 
 use super::{Reporter, film_frame};
-use crate::chain::{Archive, Ensemble, EnsembleSettings, Round};
+use crate::chain::{Archive, Ensemble, EnsembleSettings, Normalization, Round};
 use crate::hub::Hub;
 use crate::scene::Scene;
 use crate::steering::Envelope;
@@ -113,7 +113,7 @@ impl<'a> ChainRunner<'a> {
         let batches = self.ensemble.advance(self.scene, steps, window);
         if window.is_some() {
             // Kept before it is shown, so that whatever is picked can be found.
-            let (normalization, _) = self.ensemble.normalization(self.scene);
+            let normalization = self.ensemble.normalization(self.scene).b;
             let checkpoints = self.ensemble.take_checkpoints();
             let kernel = self.ensemble.shared_kernel();
             self.archive.put(Round::new(kernel, normalization, WINDOW.min(steps), checkpoints));
@@ -158,7 +158,7 @@ impl<'a> ChainRunner<'a> {
             ChainCommand::SetWeight { strategy, weight } => self.set_weight(strategy, weight),
             ChainCommand::SetPrecision(precision) => {
                 // The pool there is tells how large the next one must be, and is thrown away.
-                let (b, error) = self.ensemble.normalization(self.scene);
+                let Normalization { b, error } = self.ensemble.normalization(self.scene);
                 let more = (error / b / precision).powi(2);
                 let samples = self.settings.bootstrap_samples as f64 * more;
                 self.precision = precision;
@@ -258,7 +258,7 @@ fn describe(scene: &Scene, ensemble: &Ensemble) {
         warn!("no light reaches the film; the image stays black");
         return;
     }
-    let (b, error) = ensemble.normalization(scene);
+    let Normalization { b, error } = ensemble.normalization(scene);
     info!("{} chains; mean luminance {b:.4} +- {error:.1e}", ensemble.chain_count());
     if error > 0.01 * b {
         warn!("the mean luminance is only known to within {:.1} %", 100.0 * error / b);

@@ -48,7 +48,7 @@ pub(crate) fn metropolis(scene: &Scene, seed: u64, steps: u64) -> Film {
 
 fn primary_sample(scene: &Scene, sampler: PrimarySampler, seed: u64, steps: u64) -> Film {
     let primary = PrimarySettings { sampler, ..PrimarySettings::default() };
-    let mut ensemble = PrimaryEnsemble::new(scene, (&settings(seed, 64), primary), |_| ());
+    let mut ensemble = PrimaryEnsemble::new(scene, &settings(seed, 64), primary, |_| ());
     ensemble.advance(scene, steps);
     ensemble.image(scene)
 }
@@ -324,7 +324,7 @@ fn the_number_of_threads_changes_no_bit() {
         let by_pssmlt = |threads| {
             let chains = EnsembleSettings { threads, ..settings(4, 24) };
             let primary = PrimarySettings { sampler, ..PrimarySettings::default() };
-            let mut ensemble = PrimaryEnsemble::new(&scene, (&chains, primary), |_| ());
+            let mut ensemble = PrimaryEnsemble::new(&scene, &chains, primary, |_| ());
             ensemble.advance(&scene, 200);
             ensemble.advance(&scene, 200);
             bits(&ensemble.image(&scene))

@@ -185,7 +185,7 @@ impl Part {
         if expected.as_bytes() != &digest || !rows.is_sorted_by(|a, b| a.number < b.number) {
             return Err(PartError::Damaged);
         }
-        let ledger = Ledger::from_parts((width, height), quantum, rows, columns);
+        let ledger = Ledger::from_parts([width, height], quantum, rows, columns);
         Ok(Self { origin: head.origin, ledger })
     }
 }
