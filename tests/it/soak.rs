@@ -132,7 +132,7 @@ async fn settle(session: &mut Session, seen: &mut Follower) {
     }
 }
 
-async fn follow(address: String, over: Arc<AtomicBool>) -> Follower {
+async fn follow_explorer(address: String, over: Arc<AtomicBool>) -> Follower {
     let mut session = join(&address, "follower", Role::Observer, true, String::new()).await;
     let mut seen = Follower::default();
     while !over.load(Ordering::Relaxed) {
@@ -223,7 +223,7 @@ async fn a_daemon_in_daily_use_loses_nothing_and_does_not_grow() {
     let tasks = TaskTracker::new();
     let scales = tasks.spawn(weigh(address.clone(), Arc::clone(&over), half));
     let driving = tasks.spawn(drive(address.clone(), end));
-    let following = tasks.spawn(follow(address.clone(), Arc::clone(&over)));
+    let following = tasks.spawn(follow_explorer(address.clone(), Arc::clone(&over)));
     let (mut stalled, mut churning) = (JoinSet::new(), JoinSet::new());
     for number in 0..4 {
         stalled.spawn(stall(address.clone(), Arc::clone(&over)));

@@ -130,7 +130,7 @@ fn output_that_cannot_be_printed_costs_no_picture() {
 fn a_command_that_cannot_be_followed_is_a_failure() {
     let run = Run::of("image save no/such/folder/a.exr\nimage save a.bmp\n");
     run.fails("no such folder");
-    run.fails("`a.bmp` does not tell its format");
+    run.fails("`a.bmp` has no known extension");
     assert!(is_picture(&run.path("picture.png")), "the picture is written all the same");
     Run::of("image reference gone.exr\n").fails("gone.exr");
     Run::of("filter set any on object \"heffalump\"\n").fails("The filter is left out");

@@ -12,7 +12,7 @@ use tracing_subscriber::EnvFilter;
 
 use crate::Writer;
 
-/// How long the end of a program waits for whoever reads its log.
+/// How long the end of a program waits for the reader of its log.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// The log of the program; its end is [`Log::finish`].

@@ -15,7 +15,7 @@ use crate::image_file::Destination;
 use crate::render::auto::{of_part, planes};
 use crate::replicate::{Part, PartError, Selection};
 
-/// Adds films of replicates up: bit for bit the picture that one run would have made.
+/// Adds up films of replicates: bit for bit the picture of a single run.
 ///
 /// The films are those of `render --film-out`, of the same scene, version and settings, and no replicate
 /// may be in two of them. Their order makes no difference.
@@ -29,10 +29,10 @@ pub struct MergeArgs {
     /// The films.
     #[arg(required = true, value_name = "PART.lvf")]
     pub parts: Vec<PathBuf>,
-    /// Where to put the image: .exr keeps linear radiance, .png is exposed to be looked at.
+    /// Where to write the image: .exr keeps linear radiance, .png is exposed for viewing.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Where to put the sum as a film, to which more may be added.
+    /// Where to write the sum as a film, to which more can be added.
     #[arg(long, value_name = "FILE.lvf")]
     pub film_out: Option<PathBuf>,
 }

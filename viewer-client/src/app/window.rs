@@ -17,7 +17,7 @@ use crate::app::desktop::Connect;
 use crate::app::pace::{CALM, FRAME, Pace};
 use crate::command::Command;
 use crate::draw::gpu::Quality;
-use crate::source::connection::{Haste, Link, Peer, Waker};
+use crate::source::connection::{Link, Peer, Urgency, Waker};
 
 /// The window's first size in points.
 const SIZE: [f32; 2] = [1440.0, 860.0];
@@ -57,7 +57,7 @@ pub fn run(viewer: Viewer, peer: Option<Peer>, commands: Vec<Command>) -> anyhow
     let quiet = Quiet::begin();
     let create = move |cc: &eframe::CreationContext<'_>| {
         told_by_drivers(&quiet.end());
-        let gpu = cc.wgpu_render_state.as_ref().context("no graphics card was found")?;
+        let gpu = cc.wgpu_render_state.as_ref().context("no graphics adapter was found")?;
         Viewer::install(&cc.egui_ctx, gpu, quality(gpu));
         keep_within(&cc.egui_ctx, gpu);
         let mut viewer = viewer;
@@ -69,7 +69,7 @@ pub fn run(viewer: Viewer, peer: Option<Peer>, commands: Vec<Command>) -> anyhow
         let connect: Connect = Box::new(move |peer| {
             let (ctx, calm) = (ctx.clone(), Arc::clone(&calm));
             let waker: Waker = Box::new(move |haste| {
-                let patient = haste == Haste::Whenever && calm.load(Ordering::Relaxed);
+                let patient = haste == Urgency::Whenever && calm.load(Ordering::Relaxed);
                 ctx.request_repaint_after(if patient { CALM } else { FRAME });
             });
             Link::start(peer, waker)
@@ -102,7 +102,7 @@ pub fn run(viewer: Viewer, peer: Option<Peer>, commands: Vec<Command>) -> anyhow
 /// What graphics drivers had to say of displays that they passed over.
 pub(crate) fn told_by_drivers(text: &str) {
     if !text.is_empty() {
-        tracing::debug!("said while the graphics card was looked for:\n{text}");
+        tracing::debug!("printed while the graphics adapter was opened:\n{text}");
     }
 }
 

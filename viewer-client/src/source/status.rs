@@ -57,11 +57,11 @@ pub struct Status {
     pub mutation_history: History,
     /// How the chains do over time.
     pub trends: Trends,
-    /// How often the connection was made anew.
+    /// How often the viewer reconnected.
     pub reconnects: u32,
     /// The answer to the filter that was set last.
     pub filter: Option<FilterReply>,
-    /// Who steers, and what the explorer does.
+    /// Who steers, and what the explorer is doing.
     pub steering: Steering,
     /// How long the daemon took to answer a question last, way and back.
     pub latency: Option<Duration>,
@@ -75,7 +75,7 @@ pub struct Status {
     failures: Vec<String>,
 }
 
-/// Failures that are kept for whoever asks.
+/// Failures that have not been collected yet.
 const MOST_FAILURES: usize = 64;
 
 /// A daemon that says nothing for so long does not answer.
@@ -138,7 +138,7 @@ impl Status {
         self.welcome.as_ref().map_or(Role::Observer, |w| self.steering.role(w.session))
     }
 
-    /// What is known of the image besides its pixels.
+    /// What is known about the image in addition to its pixels.
     pub fn provenance(&self) -> Provenance<'_> {
         let mut metadata = Vec::new();
         if let Some(welcome) = &self.welcome {
@@ -180,7 +180,7 @@ impl Status {
         self.notice = Some(Notice { text: format::sentence(text), is_bad, at: Instant::now() });
     }
 
-    /// What went wrong since this was asked last: for whoever has no window to read notices in.
+    /// What went wrong since the last call, for use without a window.
     pub fn take_failures(&mut self) -> Vec<String> {
         std::mem::take(&mut self.failures)
     }

@@ -1,6 +1,6 @@
 use super::*;
 
-/// What a folder holds besides what is named.
+/// Everything in a folder except what is named.
 fn others(folder: &Path, named: &[&str]) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder");
     let names = entries.map(|entry| entry.expect("an entry").file_name().into_string());

@@ -36,10 +36,10 @@ use report::{metadata, print, work};
 
 /// Mutations, or samples, for each pixel unless the user says otherwise.
 const DEFAULT_PER_PIXEL: u64 = 256;
-/// How long the end waits for whoever reads the report.
+/// How long the end of the program waits for the reader of the report.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Renders one image, with a table of what the chains did.
+/// Renders one image, and prints a table of what the chains did.
 ///
 /// The same scene, seed and options give the same image, whatever the number of threads. Ctrl-C, SIGTERM
 /// and the end of the terminal write the image so far; exit codes are then 130, 143 and 129. An image
@@ -59,7 +59,7 @@ Examples:
 pub struct RenderArgs {
     /// A built-in scene, a .toml, .obj or Mitsuba .xml file, or a directory that holds one.
     pub scene: String,
-    /// Where to put the image: .exr keeps linear radiance, .png is exposed to be looked at; a pipe
+    /// Where to write the image: .exr keeps linear radiance, .png is exposed for viewing; a pipe
     /// without a name gets EXR.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
@@ -70,7 +70,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", conflicts_with = "time")]
     #[arg(value_parser = RangedU64ValueParser::<u64>::new().range(1..=1 << 32))]
     pub mutations_per_pixel: Option<u64>,
-    /// Render for so many seconds, seeding included.
+    /// Render for this many seconds, seeding included.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time: Option<Duration>,
     /// The chains.
@@ -93,7 +93,7 @@ pub struct RenderArgs {
     /// An image to measure the error against.
     #[arg(long, value_name = "REF.exr")]
     pub reference: Option<PathBuf>,
-    /// Where to put the report as JSON.
+    /// Where to write the report as JSON.
     #[arg(long, value_name = "FILE")]
     pub stats_json: Option<PathBuf>,
 }
@@ -104,7 +104,7 @@ pub struct PrimaryArgs {
     /// The renderer whose random numbers `--integrator pssmlt` moves [default: bdpt].
     #[arg(long, value_enum, value_name = "RENDERER")]
     pub primary_sampler: Option<PrimarySamplerName>,
-    /// Share of the steps of `--integrator pssmlt` that draw all numbers anew [default: 0.3].
+    /// Share of the steps of `--integrator pssmlt` that draw all numbers afresh [default: 0.3].
     #[arg(long, value_name = "SHARE", value_parser = share)]
     pub large_step: Option<f64>,
 }
@@ -125,7 +125,7 @@ impl PrimaryArgs {
         let silent = self.primary_sampler.is_none() && self.large_step.is_none();
         ensure!(
             silent || integrator == IntegratorName::Pssmlt,
-            "--primary-sampler and --large-step are for --integrator pssmlt"
+            "--primary-sampler and --large-step only apply to --integrator pssmlt"
         );
         let sampler = self.primary_sampler.map_or(usual.sampler, |name| match name {
             PrimarySamplerName::Bdpt => PrimarySampler::Bdpt,
@@ -150,7 +150,7 @@ pub(super) fn seconds(text: &str) -> Result<Duration, String> {
 pub fn run(args: &RenderArgs) -> anyhow::Result<ExitCode> {
     let job = Job::new(args)?;
     let file = args.output.display();
-    let stopper = Stopper::listen(format!("`{file}` gets the image so far"))?;
+    let stopper = Stopper::listen(format!("saving the image so far in `{file}`"))?;
     job.run(&stopper)
 }
 
@@ -209,7 +209,7 @@ impl Job {
         let code = stopped.map_or(ExitCode::SUCCESS, |ending| ending.exit_code().into());
         let file = self.image.path().display();
         if report.stopped && report.mutations == 0 {
-            tracing::warn!("stopped before there was an image: `{file}` is as it was");
+            tracing::warn!("stopped before there was an image: `{file}` is unchanged");
             return Ok(code);
         }
         if let Some(reference) = &self.reference {
@@ -285,8 +285,8 @@ pub(super) fn check_reference(reference: &Film, scene: &Scene) -> anyhow::Result
     let camera = scene.camera();
     ensure!(
         (reference.width(), reference.height()) == (camera.width, camera.height),
-        "the reference has {} x {} pixels and the film {} x {}; choose the film with --width and \
-         --height",
+        "the reference has {} x {} pixels and the film {} x {}; set the film's size with --width \
+        and --height",
         reference.width(),
         reference.height(),
         camera.width,
@@ -392,7 +392,7 @@ mod tests {
         }
         for integrator in ["bdpt", "path"] {
             let complaint = complaint(&line(integrator, "--chains 8"));
-            assert!(complaint.starts_with("--chains would change nothing"), "{complaint}");
+            assert!(complaint.starts_with("--chains would have no effect"), "{complaint}");
         }
         Job::new(&parse(&line("pssmlt", "--chains 8")).expect("valid")).expect("it has chains");
         let same = format!("--stats-json {}", file.display());

@@ -67,20 +67,21 @@ fn nothing_yet(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
     let status = world.status;
     let (title, lines) = match &status.link {
         LinkState::Idle => {
-            let remedy = "The menu Connection leads to a daemon.".to_owned();
-            ("Nothing to look at".to_owned(), vec![remedy])
+            let remedy = "Use the Connection menu to connect to a daemon.".to_owned();
+            ("Nothing is open".to_owned(), vec![remedy])
         }
-        LinkState::Connecting => {
-            (format!("Connecting to {} …", status.address), vec!["One moment.".to_owned()])
-        }
+        LinkState::Connecting => (
+            format!("Connecting to {} …", status.address),
+            vec!["This may take a moment.".to_owned()],
+        ),
         LinkState::Connected => {
-            ("Connected".to_owned(), vec!["The scene is on its way.".to_owned()])
+            ("Connected".to_owned(), vec!["Receiving the scene ...".to_owned()])
         }
         LinkState::Disconnected { reason, retry_at } => {
             let seconds = retry_at.saturating_duration_since(world.now).as_secs_f32().ceil();
             let lines = vec![
                 format::sentence(reason),
-                format!("Retrying in {seconds:.0} s; R connects now."),
+                format!("Retrying in {seconds:.0} s; press R to connect now."),
             ];
             ("No connection".to_owned(), lines)
         }
@@ -96,8 +97,8 @@ fn nothing_found(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32)
     if is_filtered && world.store.matched() == 0 && counts.matched == 0 && counts.seen > 0 {
         let seen = format::count(counts.seen as f64);
         let lines = vec![
-            format!("None of {seen} so far. The section Filter tells what came nearest,"),
-            "and offers what to do; Ctrl+Z takes the last change back.".to_owned(),
+            format!("None of {seen} so far. The Filter panel shows the nearest path"),
+            "and what to do about it; Ctrl+Z undoes the last change.".to_owned(),
         ];
         tell(painter, rect, ink, "No path matches the filter", lines);
     }
@@ -169,7 +170,7 @@ fn captions(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
     text(painter, corner, Align2::RIGHT_TOP, &paths, ink);
     if world.settings.cloud.frozen {
         let place = corner + vec2(0.0, 24.0);
-        text(painter, place, Align2::RIGHT_TOP, "Frozen; Space goes on", theme::BUSY);
+        text(painter, place, Align2::RIGHT_TOP, "Frozen; press Space to resume", theme::BUSY);
     } else if !world.status.is_connected() {
         let place = corner + vec2(0.0, 24.0);
         text(painter, place, Align2::RIGHT_TOP, "Not connected", theme::BAD);
