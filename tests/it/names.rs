@@ -63,6 +63,64 @@ pub(crate) fn references(file: &Source) -> Vec<Reference> {
     found
 }
 
+/// The functions outside tests that take a tuple apart among their parameters, and the line of each.
+pub(crate) fn tuple_parameters(file: &Source) -> Vec<(String, usize)> {
+    let mut found = Vec::new();
+    look_for_tuples(&tokens(file), &mut found);
+    found
+}
+
+fn look_for_tuples(trees: &[TokenTree], found: &mut Vec<(String, usize)>) {
+    let mut i = 0;
+    while i < trees.len() {
+        match (&trees[i], trees.get(i + 1)) {
+            (TokenTree::Punct(_), Some(TokenTree::Group(attribute))) if is_cfg_test(attribute) => {
+                i = after_item(trees, i + 2);
+                continue;
+            }
+            (TokenTree::Ident(keyword), Some(TokenTree::Ident(name))) if keyword == "fn" => {
+                let list = parameter_list(&trees[i + 2..]);
+                if list.is_some_and(takes_a_tuple_apart) {
+                    found.push((name.to_string(), keyword.span().start().line));
+                }
+            }
+            (TokenTree::Group(group), _) => look_for_tuples(&inside(group), found),
+            _ => {}
+        }
+        i += 1;
+    }
+}
+
+/// The list of parameters, behind the generic ones between angles.
+fn parameter_list(trees: &[TokenTree]) -> Option<&Group> {
+    let (mut depth, mut is_arrow) = (0, false);
+    for tree in trees {
+        match tree {
+            TokenTree::Punct(punct) => {
+                match punct.as_char() {
+                    '<' => depth += 1,
+                    '>' if !is_arrow => depth -= 1,
+                    _ => {}
+                }
+                is_arrow = punct.as_char() == '-';
+            }
+            TokenTree::Group(group) if depth == 0 => return Some(group),
+            _ => {}
+        }
+    }
+    None
+}
+
+/// True of a list with a parameter such as `(a, b): (A, B)`.
+fn takes_a_tuple_apart(list: &Group) -> bool {
+    inside(list).windows(2).any(|two| {
+        matches!(two, [TokenTree::Group(group), TokenTree::Punct(colon)]
+            if colon.as_char() == ':'
+                && group.delimiter() == Delimiter::Parenthesis
+                && !group.stream().is_empty())
+    })
+}
+
 fn walk(trees: &[TokenTree], module: &mut Vec<String>, found: &mut Vec<Reference>) {
     let mut i = 0;
     while i < trees.len() {
@@ -82,7 +140,7 @@ fn walk(trees: &[TokenTree], module: &mut Vec<String>, found: &mut Vec<Reference
                 module.pop();
                 i + 3
             }
-            (TokenTree::Ident(_), ..) => follow(trees, i, Vec::new(), module, found),
+            (TokenTree::Ident(_), ..) => read_path(trees, i, Vec::new(), module, found),
             (TokenTree::Group(group), ..) => {
                 walk(&inside(group), module, found);
                 i + 1
@@ -94,7 +152,7 @@ fn walk(trees: &[TokenTree], module: &mut Vec<String>, found: &mut Vec<Reference
 
 /// Reads the path that starts at `trees[i]` after `prefix`, expands braces of a `use`, and returns
 /// the index behind it.
-fn follow(
+fn read_path(
     trees: &[TokenTree],
     mut i: usize,
     prefix: Vec<String>,
@@ -116,7 +174,7 @@ fn follow(
         && is_path_separator(trees, i.wrapping_sub(2))
     {
         for branch in branches(group) {
-            follow(&branch, 0, segments.clone(), module, found);
+            read_path(&branch, 0, segments.clone(), module, found);
         }
         return i + 1;
     }

@@ -1,5 +1,6 @@
 //! Order in every file of the repository.
 
+use crate::names::{lies_under, test_modules, tuple_parameters};
 use crate::workspace::{Source, sources, texts};
 
 /// Lines that a file of code may have. Longer ones hold more than one idea.
@@ -57,6 +58,48 @@ fn files_fit_a_head() {
         let lines = file.text.lines().count();
         assert!(lines <= LONGEST, "{} has {lines} lines; {LONGEST} is the limit", file.path);
     }
+}
+
+/// Where parameters have names: a tuple among them would hide how many there are.
+const NAMED: [&str; 1] = ["tracer-server"];
+
+/// The functions that take tuples apart, but those of tests.
+fn tuples_taken_apart(files: &[Source]) -> Vec<String> {
+    let tests = test_modules(files);
+    let is_test = |path: &str| tests.iter().any(|test| lies_under(path, test));
+    let named = |file: &&Source| NAMED.iter().any(|room| lies_under(&file.path, room));
+    let told = |file: &Source| {
+        let functions = tuple_parameters(file).into_iter();
+        let path = file.path.clone();
+        functions.map(move |(name, line)| {
+            format!(
+                "{path}:{line} `{name}` takes a tuple apart: give it a struct or a parameter each"
+            )
+        })
+    };
+    files.iter().filter(named).filter(|file| !is_test(&file.path)).flat_map(told).collect()
+}
+
+#[test]
+fn parameters_have_names() {
+    let found = tuples_taken_apart(&sources(&["rs"]));
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+#[test]
+fn planted_tuples_are_found() {
+    let found = |path: &str, text: &str| {
+        let parent = Source::made_up("tracer-server/src/lib.rs", "#[cfg(test)] mod laws;");
+        let path = format!("tracer-server/src/{path}");
+        tuples_taken_apart(&[parent, Source::made_up(&path, text)]).len()
+    };
+    let planted = "fn f<T: Fn(u8)>(x: T, (a, b): (u8, &[T])) {}";
+    assert_eq!(found("x.rs", planted), 1);
+    assert_eq!(found("x.rs", "impl X { fn g(&self, (a, b): (u8, u8)) {} }"), 1, "in a block");
+    assert_eq!(found("laws.rs", planted), 0, "in a test");
+    assert_eq!(found("x.rs", &format!("#[cfg(test)] mod tests {{ {planted} }}")), 0, "in a test");
+    let allowed = "fn f(pair: (u8, u8), (): ()) { |(a, b): (u8, u8)| a + b; }";
+    assert_eq!(found("x.rs", allowed), 0, "closures, whole tuples and nothing at all");
 }
 
 #[test]

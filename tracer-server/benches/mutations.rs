@@ -84,7 +84,7 @@ fn measure(
     scene: &Scene,
     strategies: &str,
     options: &StrategyOptions,
-    (closest, shadow): (f64, f64),
+    alone: RayRates,
 ) -> Vec<String> {
     let settings = EnsembleSettings {
         seed: 1,
@@ -102,7 +102,7 @@ fn measure(
     let rays = per_step(after.rays, before.rays);
     let shadows = per_step(after.shadow_rays, before.shadow_rays);
     let rate = (STEPS * u64::from(settings.chains)) as f64 / best.as_secs_f64();
-    let limit = 1.0 / (rays / closest + shadows / shadow);
+    let limit = 1.0 / (rays / alone.closest + shadows / alone.shadow);
     vec![
         scene.name().to_owned(),
         strategies.to_owned(),
@@ -113,8 +113,15 @@ fn measure(
     ]
 }
 
-/// Closest-hit and shadow rays a second along the edges of the scene's own paths.
-fn ray_rates(scene: &Scene) -> (f64, f64) {
+/// Rays a second.
+#[derive(Clone, Copy, Debug)]
+struct RayRates {
+    closest: f64,
+    shadow: f64,
+}
+
+/// How fast rays alone are along the edges of the scene's own paths.
+fn ray_rates(scene: &Scene) -> RayRates {
     let tracer = Tracer::new(scene);
     let mut sampler = BidirectionalSampler::new(&tracer);
     let mut rng = Rng::new(1, Stream::Laboratory, 0);
@@ -139,7 +146,7 @@ fn ray_rates(scene: &Scene) -> (f64, f64) {
             black_box(scene.visible(&from.anchor(), &to.anchor()));
         }
     });
-    (count / closest.as_secs_f64(), count / shadow.as_secs_f64())
+    RayRates { closest: count / closest.as_secs_f64(), shadow: count / shadow.as_secs_f64() }
 }
 
 /// Spreads indices below `n` without drawing random numbers.

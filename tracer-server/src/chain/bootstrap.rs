@@ -83,12 +83,23 @@ impl<'a, 's> Source<'a, 's> {
     }
 }
 
-/// Draws a pool on many threads; one that is told to `stop` is empty. `on_progress` hears the number of samples drawn.
+/// How a pool is drawn on many threads.
+#[derive(Clone, Copy, Debug)]
+pub struct Drawing<'a> {
+    /// Samples of the pool.
+    pub samples: u64,
+    /// Worker threads; the pool does not depend on it.
+    pub threads: usize,
+    /// A pool that is told to stop is empty.
+    pub stop: &'a Stop,
+}
+
+/// Draws a pool of seeds for chains that visit `target`. `on_progress` hears the number of samples drawn.
 pub fn draw_pool(
     scene: &Scene,
-    (key, target): (PoolKey, &Target),
-    (samples, threads): (u64, usize),
-    stop: &Stop,
+    key: PoolKey,
+    target: &Target,
+    drawing: Drawing<'_>,
     on_progress: impl FnMut(u64),
 ) -> Pool {
     let start = || Tracer::new(scene);
@@ -96,20 +107,20 @@ pub fn draw_pool(
         let mut source = Source::new(tracer, key, target);
         numbers.map(|number| source.weight(number)).collect()
     };
-    Pool::gather((samples, threads), start, draw, stop, on_progress)
+    Pool::gather(drawing, start, draw, on_progress)
 }
 
 impl Pool {
-    /// Gathers `samples` weights in chunks, which `draw` gives by their numbers; none when told to `stop`.
+    /// Gathers weights in chunks, which `draw` gives by their numbers.
     pub fn gather<S: Send>(
-        (samples, threads): (u64, usize),
+        drawing: Drawing<'_>,
         start: impl Fn() -> S + Sync,
         draw: impl Fn(&mut S, std::ops::Range<u64>) -> Vec<f64> + Sync,
-        stop: &Stop,
         mut on_progress: impl FnMut(u64),
     ) -> Self {
         /// Chunks between two reports.
         const REPORT: u64 = 8;
+        let Drawing { samples, threads, stop } = drawing;
         let chunks = samples.div_ceil(CHUNK);
         let mut weights = Vec::new();
         for first in (0..chunks).step_by(REPORT as usize) {

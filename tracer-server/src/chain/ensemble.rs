@@ -8,8 +8,8 @@ use common::{ChainId, Diagnostics, PathBatch};
 use super::diagnose::{diagnose, longest};
 use super::monitor::LongestStay;
 use super::{
-    Chain, ChainStatistics, Checkpoint, Kernel, PilotSettings, Pool, PoolKey, Prospect, Source,
-    Survey, Watch, draw_pool, survey,
+    Chain, ChainStatistics, Checkpoint, Drawing, Kernel, Normalization, PilotSettings, Pool,
+    PoolKey, Prospect, Source, Survey, Watch, draw_pool, survey,
 };
 use crate::film::Film;
 use crate::mutation::{Mixture, StrategyOptions};
@@ -92,8 +92,8 @@ impl Ensemble {
     ) -> Self {
         let key = PoolKey { seed: settings.seed, number: 0 };
         let (samples, threads) = (settings.bootstrap_samples, settings.threads.max(1));
-        let wanted = (key, &Target::Whole);
-        let pool = draw_pool(scene, wanted, (samples, threads), stop, on_progress);
+        let drawing = Drawing { samples, threads, stop };
+        let pool = draw_pool(scene, key, &Target::Whole, drawing, on_progress);
         let camera = scene.camera();
         let pilot = PilotSettings {
             seed: settings.seed,
@@ -207,7 +207,7 @@ impl Ensemble {
             self.threads.min(LANES),
             self.lanes.iter_mut().zip(batches.iter_mut()),
             || (),
-            |(), (lane, out)| *out = lane.advance(scene, (kernel, stop), steps, window),
+            |(), (lane, out)| *out = lane.advance(scene, kernel, stop, steps, window),
         );
         batches.into_iter().flatten().collect()
     }
@@ -228,10 +228,9 @@ impl Ensemble {
         image
     }
 
-    /// Mean luminance of the image and its standard error, in the file's units.
-    pub fn normalization(&self, scene: &Scene) -> (f64, f64) {
-        let scale = scene.radiance_scale();
-        (self.pool.normalization() * scale, self.pool.normalization_error() * scale)
+    /// Mean luminance of the image, in the file's units.
+    pub fn normalization(&self, scene: &Scene) -> Normalization {
+        Normalization::of(&self.pool, scene)
     }
 
     /// Counts of all chains together.
@@ -254,7 +253,8 @@ impl Lane {
     fn advance(
         &mut self,
         scene: &Scene,
-        (kernel, stop): (&Kernel, &Stop),
+        kernel: &Kernel,
+        stop: &Stop,
         steps: u64,
         window: Option<u64>,
     ) -> Vec<PathBatch> {

@@ -22,12 +22,12 @@ use crate::path::{Draft, Failure, Kept, Path};
 use crate::scene::Tracer;
 
 pub use archive::{Archive, Gone, Round};
-pub use bootstrap::{PoolKey, Source, draw_pool};
+pub use bootstrap::{Drawing, PoolKey, Source, draw_pool};
 pub use checkpoint::Checkpoint;
 pub use ensemble::{Ensemble, EnsembleSettings, LANES};
 pub use kernel::Kernel;
 pub use pilot::{PilotSettings, Prospect, Sighting, Survey, survey};
-pub use pool::Pool;
+pub use pool::{Normalization, Pool};
 pub use statistics::{ChainStatistics, StrategyCounts};
 pub use watch::Watch;
 

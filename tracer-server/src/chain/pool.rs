@@ -4,6 +4,24 @@
 //! [Veach 1997, section 11.3.1].
 
 use crate::math::{Accumulator, Rng};
+use crate::scene::Scene;
+
+/// The mean luminance of an image, `b`, as samples tell it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Normalization {
+    /// The estimate, in the file's units.
+    pub b: f64,
+    /// Its standard error.
+    pub error: f64,
+}
+
+impl Normalization {
+    /// As the samples of a pool tell it.
+    pub fn of(pool: &Pool, scene: &Scene) -> Self {
+        let scale = scene.radiance_scale();
+        Self { b: pool.normalization() * scale, error: pool.normalization_error() * scale }
+    }
+}
 
 /// The weights of numbered samples. A sample can be drawn again by its number.
 ///

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use common::{ChainCommand, ChainTotals, FailureCount, FilmFrame, Statistics, StrategyStatistics};
 use tracing::warn;
 
-use crate::chain::{Archive, Ensemble, EnsembleSettings, StrategyCounts};
+use crate::chain::{Archive, Ensemble, EnsembleSettings, Normalization, StrategyCounts};
 use crate::hub::Hub;
 use crate::path::Failure;
 use crate::scene::Scene;
@@ -141,7 +141,8 @@ fn film_frame(scene: &Scene, ensemble: &Ensemble) -> FilmFrame {
 
 fn statistics(scene: &Scene, ensemble: &Ensemble) -> Statistics {
     let counts = ensemble.statistics();
-    let (normalization, normalization_error) = ensemble.normalization(scene);
+    let Normalization { b: normalization, error: normalization_error } =
+        ensemble.normalization(scene);
     Statistics {
         totals: ChainTotals {
             steps: counts.steps,

@@ -43,7 +43,7 @@ impl BidirectionalTracer {
             || Tracer::new(scene),
             |scene, (number, lane)| {
                 for pass in first..first + samples {
-                    render_lane(scene, lane, number, (seed, pass));
+                    render_lane(scene, lane, number, seed, pass);
                 }
             },
         );
@@ -102,7 +102,7 @@ fn splat(film: &mut Film, path: &Path, weight: f64) {
 }
 
 /// One pass over the rows of a lane: rows `lane`, `lane + LANES`, ...
-fn render_lane(scene: &Tracer<'_>, film: &mut Film, lane: usize, (seed, pass): (u64, u64)) {
+fn render_lane(scene: &Tracer<'_>, film: &mut Film, lane: usize, seed: u64, pass: u64) {
     let camera = scene.camera();
     let (width, height) = (u64::from(camera.width), u64::from(camera.height));
     let mut sampler = BidirectionalSampler::new(scene);

@@ -5,9 +5,10 @@ use std::time::{Duration, Instant};
 use cpu_time::ProcessTime;
 
 use super::{Budget, Progress, RenderSettings, Rendering, Report, chain_report};
+use crate::chain::Normalization;
 use crate::parallel::Stop;
 use crate::replicate::{
-    Advance, Ledger, Limits, Origin, Part, Picture, Plan, Selection, TILE, prepare,
+    Advance, Ledger, Limits, Origin, Part, Picture, Plan, PlanSettings, Selection, TILE, prepare,
 };
 use crate::scene::Scene;
 use host::picture::Plane;
@@ -23,7 +24,7 @@ const LOOKS: [u64; 36] = [
 const SAVING: Duration = Duration::from_secs(4);
 
 /// Keeps what there is of a picture.
-pub type Save<'a> = dyn FnMut(&Part) -> anyhow::Result<()> + Send + 'a;
+pub type Save<'a> = dyn FnMut(&Part) + Send + 'a;
 
 /// What is asked for besides the settings of every picture.
 pub struct Wish<'a> {
@@ -74,7 +75,7 @@ pub fn origin(scene: &Scene, plan: &Plan) -> Origin {
 ///
 /// # Errors
 ///
-/// Where the replicates there are do not belong to the picture, or cannot be saved.
+/// Where the replicates there are do not belong to the picture.
 pub fn render(
     scene: &Scene,
     settings: &RenderSettings,
@@ -85,8 +86,13 @@ pub fn render(
     let ensemble = &settings.ensemble;
     let threads = ensemble.threads.max(1);
     on_progress(Progress::Seeding(0));
-    let plan =
-        prepare(scene, (&ensemble.strategies, settings.dial), (ensemble.seed, threads), &wish.stop);
+    let wanted = PlanSettings {
+        seed: ensemble.seed,
+        threads,
+        strategies: ensemble.strategies,
+        dial: settings.dial,
+    };
+    let plan = prepare(scene, &wanted, &wish.stop);
     let seeding_seconds = wall.elapsed().as_secs_f64();
     let mut picture = Picture::new(scene, &plan);
     let origin = origin(scene, &plan);
@@ -103,36 +109,17 @@ pub fn render(
         began: wall,
         saved: Instant::now(),
         save: wish.save,
-        trouble: None,
     };
-    let camera = scene.camera();
-    match (wish.selection, wish.until, settings.budget) {
-        (Some(selection), ..) => {
-            let count = match settings.budget {
-                Budget::PerPixel(n) => plan.replicates_for(n, camera),
-                Budget::Time(_) => u64::MAX,
-            };
-            job.work(&mut picture, &selection.closed(count), on_progress);
-        }
-        (None, Some(noise), budget) => {
-            let most = match budget {
-                Budget::PerPixel(n) => plan.replicates_for(n, camera),
-                Budget::Time(_) => u64::MAX,
-            };
-            job.work_until(&mut picture, (noise, most), on_progress);
-        }
-        (None, None, Budget::PerPixel(n)) => {
-            let count = plan.replicates_for(n, camera);
-            job.work(&mut picture, &Selection::first(count), on_progress);
-        }
-        (None, None, Budget::Time(_)) => {
-            job.work(&mut picture, &Selection::first(u64::MAX - 1), on_progress);
-        }
+    let most = match settings.budget {
+        Budget::PerPixel(n) => plan.replicates_for(n, scene.camera()),
+        Budget::Time(_) => u64::MAX - 1,
+    };
+    match (wish.selection, wish.until) {
+        (Some(selection), _) => job.work(&mut picture, &selection.closed(most), on_progress),
+        (None, Some(noise)) => job.work_until(&mut picture, noise, most, on_progress),
+        (None, None) => job.work(&mut picture, &Selection::first(most), on_progress),
     }
     job.keep(&picture);
-    if let Some(trouble) = job.trouble {
-        return Err(trouble);
-    }
     let mut image = picture.image();
     image.scale(scene.radiance_scale());
     let (wall_seconds, cpu_seconds) = (wall.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64());
@@ -167,7 +154,6 @@ struct Job<'a, 'w> {
     began: Instant,
     saved: Instant,
     save: Option<&'w mut Save<'w>>,
-    trouble: Option<anyhow::Error>,
 }
 
 impl Job<'_, '_> {
@@ -195,14 +181,15 @@ impl Job<'_, '_> {
                 self.keep(picture);
             }
         };
-        picture.work((scene, plan), selection, &limits, &mut on_advance);
+        picture.work(scene, plan, selection, &limits, &mut on_advance);
     }
 
     /// Works until the noise is low enough, which is looked at after preset numbers of replicates.
     fn work_until(
         &mut self,
         picture: &mut Picture,
-        (noise, most): (f64, u64),
+        noise: f64,
+        most: u64,
         on_progress: &mut (dyn FnMut(Progress) + Send),
     ) {
         for look in LOOKS {
@@ -218,13 +205,11 @@ impl Job<'_, '_> {
         }
     }
 
-    /// Keeps the replicates there are; the first trouble with that is reported at the end.
+    /// Keeps the replicates there are.
     fn keep(&mut self, picture: &Picture) {
         if let Some(save) = &mut self.save {
             let part = Part { origin: self.origin.clone(), ledger: picture.ledger.clone() };
-            if let Err(error) = save(&part) {
-                self.trouble.get_or_insert(error);
-            }
+            save(&part);
             self.saved = Instant::now();
         }
     }
@@ -236,6 +221,7 @@ fn report(scene: &Scene, plan: &Plan, picture: &Picture) -> Report {
     let names = plan.kernel.mixture.names();
     let scale = scene.radiance_scale();
     let b = picture.ledger.normalization();
+    let normalization = Normalization { b: b.mean * scale, error: b.error * scale };
     let sum = |value: fn(&crate::replicate::Row) -> u64| picture.rows().map(value).sum::<u64>();
     let replicates = picture.ledger.count();
     let mean = picture.ledger.mean();
@@ -260,7 +246,7 @@ fn report(scene: &Scene, plan: &Plan, picture: &Picture) -> Report {
         noise: (replicates > 1).then(|| picture.ledger.noise()),
         mean_error: (replicates > 1).then_some(mean.error * scale),
         mean_kurtosis: (replicates > 3).then_some(mean.kurtosis),
-        ..chain_report(&names, &picture.statistics, (b.mean * scale, b.error * scale))
+        ..chain_report(&names, &picture.statistics, normalization)
     }
 }
 
@@ -301,7 +287,7 @@ pub(super) fn plain(
     settings: &RenderSettings,
     on_progress: &mut (dyn FnMut(Progress) + Send),
 ) -> Rendering {
-    // Without a film to begin with or to save, nothing can go wrong.
+    // Without a film to begin with, nothing can go wrong.
     let wish = Wish { stop: stop.clone(), ..Wish::none() };
     render(scene, settings, wish, on_progress).unwrap_or_else(|_error| Rendering {
         image: crate::film::Film::new(scene.camera().width, scene.camera().height),

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use cpu_time::ProcessTime;
 use serde::Serialize;
 
-use crate::chain::{ChainStatistics, Ensemble, EnsembleSettings, Prospect};
+use crate::chain::{ChainStatistics, Ensemble, EnsembleSettings, Normalization, Prospect};
 use crate::film::Film;
 use crate::integrator::pssmlt::{PrimaryEnsemble, PrimarySettings, STEPS};
 use crate::integrator::{BidirectionalTracer, PathTracer};
@@ -270,8 +270,8 @@ impl Work {
                 Self::Mlt(Ensemble::until(stop, scene, &settings.ensemble, on_seeding))
             }
             Integrator::Pssmlt => {
-                let settings = (&settings.ensemble, settings.primary);
-                Self::Pssmlt(PrimaryEnsemble::until(stop, scene, settings, on_seeding))
+                let RenderSettings { ensemble, primary, .. } = settings;
+                Self::Pssmlt(PrimaryEnsemble::until(stop, scene, ensemble, *primary, on_seeding))
             }
             Integrator::Bdpt => Self::Bdpt(BidirectionalTracer::new(scene, seed)),
             Integrator::Path => Self::Path(PathTracer::new(scene, seed)),
@@ -370,11 +370,11 @@ impl Work {
     }
 }
 
-/// What chains have done; `normalization` comes with its standard error.
+/// What chains have done.
 fn chain_report(
     names: &[String],
     statistics: &ChainStatistics,
-    (normalization, normalization_error): (f64, f64),
+    Normalization { b: normalization, error: normalization_error }: Normalization,
 ) -> Report {
     Report {
         rays: statistics.rays,

@@ -8,7 +8,8 @@ use glam::DVec3;
 use tests::{Accumulator, Suite, welch_z};
 
 use super::{
-    Dial, Ledger, Limits, Origin, Part, PartError, Picture, Plan, Replicate, Selection, prepare,
+    Dial, Ledger, Limits, Origin, Part, PartError, Picture, Plan, PlanSettings, Replicate,
+    Selection, prepare,
 };
 use crate::chain::{Chain, Kernel, Pool, PoolKey, Source};
 use crate::film::Film;
@@ -22,9 +23,13 @@ use crate::scene::{LightKind, Scene, Tracer};
 use crate::target::laws::targets;
 use crate::target::{Base, Target};
 
+fn wishes(seed: u64, dial: Dial) -> PlanSettings {
+    PlanSettings { seed, threads: 2, strategies: StrategyOptions::default(), dial }
+}
+
 /// A plan for small pictures, with small pools and short chains.
 fn plan(scene: &Scene, seed: u64, dial: Dial) -> Plan {
-    let plan = prepare(scene, (&StrategyOptions::default(), dial), (seed, 2), &Stop::default());
+    let plan = prepare(scene, &wishes(seed, dial), &Stop::default());
     let chains = plan.chains.min(8);
     Plan { parts: 2, pool: plan.pool.min(64), chains, steps: 40, ..plan }
 }
@@ -34,7 +39,7 @@ fn made(scene: &Scene, plan: &Plan, selection: &str, threads: usize) -> Picture 
     let stop = Stop::default();
     let limits = Limits { deadline: None, stop: &stop, threads };
     let selection: Selection = selection.parse().expect("a selection");
-    picture.work((scene, plan), &selection, &limits, &mut |_, _| ());
+    picture.work(scene, plan, &selection, &limits, &mut |_, _| ());
     picture
 }
 
@@ -89,7 +94,7 @@ fn parts_add_up_to_the_bits_of_one_run() {
     let mut resumed = made(&scene, &plan, "2..5", 2);
     let stop = Stop::default();
     let limits = Limits { deadline: None, stop: &stop, threads: 2 };
-    resumed.work((&scene, &plan), &Selection::first(8), &limits, &mut |_, _| ());
+    resumed.work(&scene, &plan, &Selection::first(8), &limits, &mut |_, _| ());
     assert!(resumed.ledger == whole.ledger, "resumed");
     // What does not belong together.
     let mut part = filed(made(&scene, &plan, "0..3", 2).ledger, "a");
@@ -366,12 +371,7 @@ fn powers_of_two_of_light_change_no_bit() {
             material.emission = material.emission * factor;
         }
         let scene = fixture.build();
-        let plan = prepare(
-            &scene,
-            (&StrategyOptions::default(), Dial::default()),
-            (6, 2),
-            &Stop::default(),
-        );
+        let plan = prepare(&scene, &wishes(6, Dial::default()), &Stop::default());
         let mut image = made(&scene, &plan, "0..3", 2).image();
         image.scale(scene.radiance_scale());
         image

@@ -148,7 +148,7 @@ impl Ledger {
 
     /// Of sums that were read.
     pub(super) fn from_parts(
-        (width, height): (u32, u32),
+        [width, height]: [u32; 2],
         quantum: f64,
         rows: Vec<Row>,
         columns: Columns,

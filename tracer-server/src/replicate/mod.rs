@@ -31,7 +31,7 @@ use crate::scene::{RayCounts, Tracer};
 
 pub use ledger::{Estimate, Ledger, Row, TILE};
 pub use part::{Origin, Part, PartError};
-pub use pilot::{Dial, prepare};
+pub use pilot::{Dial, PlanSettings, prepare};
 pub use plan::{Outlook, Plan, Share};
 pub use run::{Advance, Limits, Picture, Tail};
 pub use selection::Selection;

@@ -71,20 +71,29 @@ fn work_of_mutations(counts: RayCounts, mutations: u64) -> f64 {
 
 /// Makes the plan for a scene. Without light on the film there are no chains. What it has found by the
 /// time that it is told to `stop` is of no use.
-pub fn prepare(
-    scene: &Scene,
-    (options, dial): (&StrategyOptions, Dial),
-    (seed, threads): (u64, usize),
-    stop: &Stop,
-) -> Plan {
-    let settings = PilotSettings { seed, threads, samples: SAMPLES, stop: stop.clone() };
-    let survey = survey(scene, options, &settings);
+pub fn prepare(scene: &Scene, settings: &PlanSettings, stop: &Stop) -> Plan {
+    let &PlanSettings { seed, threads, ref strategies, dial } = settings;
+    let pilot = PilotSettings { seed, threads, samples: SAMPLES, stop: stop.clone() };
+    let survey = survey(scene, strategies, &pilot);
     let view = View::new(scene, survey);
     // Chains of a likely choice tell more, and may change it.
     let likely = view.choose(Dial { tau: dial.tau.or(Some(LIKELY)), ..dial }, FIRST_GUESS);
-    let scouting = view.scout(scene, (seed, threads), &view.kernel(&likely));
+    let scouting = view.scout(scene, settings, &view.kernel(&likely));
     let choice = view.choose(dial, scouting);
     view.plan(scene, seed, &choice)
+}
+
+/// What a plan is made from, besides the scene.
+#[derive(Clone, Debug)]
+pub struct PlanSettings {
+    /// Number of the run; the same number gives the same plan.
+    pub seed: u64,
+    /// Worker threads; the plan does not depend on it.
+    pub threads: usize,
+    /// What the user wants of the strategies.
+    pub strategies: StrategyOptions,
+    /// What the user says of the division of the work.
+    pub dial: Dial,
 }
 
 /// What a user says of the dial between base samples and chains.
@@ -333,7 +342,8 @@ impl View {
     }
 
     /// Runs short chains, each by itself, and looks how far their splats lie together.
-    fn scout(&self, scene: &Scene, (seed, threads): (u64, usize), kernel: &Kernel) -> Scouting {
+    fn scout(&self, scene: &Scene, settings: &PlanSettings, kernel: &Kernel) -> Scouting {
+        let &PlanSettings { seed, threads, .. } = settings;
         let (chains, samples, steps) = SCOUTS;
         let tracer = Tracer::new(scene);
         // Replicates have the numbers from one on.

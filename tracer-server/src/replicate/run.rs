@@ -109,7 +109,8 @@ impl Picture {
     /// and sees the picture when a replicate is done.
     pub fn work(
         &mut self,
-        (scene, plan): (&Scene, &Plan),
+        scene: &Scene,
+        plan: &Plan,
         selection: &Selection,
         limits: &Limits<'_>,
         on_advance: &mut (dyn FnMut(Advance, Option<&Self>) + Send),
@@ -122,14 +123,25 @@ impl Picture {
         let done = self.ledger.count() as f64;
         let over = AtomicBool::new(false);
         let is_on = |_: &(u64, u32)| !over.load(Ordering::Relaxed);
+        let order = |(place, (number, parts))| Order { place, number, parts };
         let shared = Mutex::new(Shared { picture: self, on_advance, done, begun });
         parallel::for_each(
             limits.threads,
-            whole.chain(tails).take_while(is_on).enumerate(),
+            (0..).zip(whole.chain(tails).take_while(is_on)).map(order),
             || Worker::new(scene, limits, &over),
             |worker, order| worker.work(plan, order, &shared),
         );
     }
+}
+
+/// One replicate to be made.
+#[derive(Clone, Copy, Debug)]
+struct Order {
+    /// Its place among those that are to be made.
+    place: u64,
+    number: u64,
+    /// The parts that are wanted of it.
+    parts: u32,
 }
 
 /// What the workers share.
@@ -173,12 +185,8 @@ impl<'a, 's> Worker<'a, 's> {
         self.limits.deadline.is_some_and(|deadline| Instant::now() + time / 2 > deadline)
     }
 
-    fn work(
-        &mut self,
-        plan: &Plan,
-        (place, (number, parts)): (usize, (u64, u32)),
-        shared: &Mutex<Shared<'_>>,
-    ) {
+    fn work(&mut self, plan: &Plan, order: Order, shared: &Mutex<Shared<'_>>) {
+        let Order { place, number, parts } = order;
         // The first replicate is always begun: there is to be a picture.
         let late = place > 0 && self.is_late(self.pool + self.part);
         if self.limits.stop.is_set() || late {

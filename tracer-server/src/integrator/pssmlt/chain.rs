@@ -48,7 +48,7 @@ pub struct PrimaryChain<P> {
 impl<P: Point> PrimaryChain<P> {
     /// A chain at `point`, whose numbers make the sample `current`. `large` is the probability of a
     /// large step.
-    pub fn new(rng: Rng, (point, current): (P, Sample), large: f64) -> Self {
+    pub fn new(rng: Rng, point: P, current: Sample, large: f64) -> Self {
         Self {
             rng,
             point,

@@ -143,7 +143,7 @@ fn run<P: Point>(
     let mut film = Film::new(scene.camera().width, scene.camera().height);
     let rng = Rng::new(4, Stream::Chain, 0);
     let timed = Timed { point, clock, time: 2 };
-    let mut chain = PrimaryChain::new(rng, (timed, start), balance.large);
+    let mut chain = PrimaryChain::new(rng, timed, start, balance.large);
     for _ in 0..2000 {
         chain.step(sampler, balance, &mut film);
     }
@@ -220,7 +220,7 @@ fn toy_chain<D: Draws>(draws: D, number: u64, large: f64) -> PrimaryChain<LazyPo
             break;
         }
     }
-    PrimaryChain::new(Rng::new(1, Stream::Chain, number), (point, start), large)
+    PrimaryChain::new(Rng::new(1, Stream::Chain, number), point, start, large)
 }
 
 /// Deviation of the share of bright and dull samples after some steps from that at the start, in

@@ -13,7 +13,7 @@ pub use chain::{Balance, PrimaryChain, STEPS};
 pub use coordinates::{Draws, LazyPoint, Place, Point, Start};
 pub use sampler::{PrimarySampler, Sample, Sampler, SceneSampler};
 
-use crate::chain::{ChainStatistics, EnsembleSettings, LANES, Pool};
+use crate::chain::{ChainStatistics, Drawing, EnsembleSettings, LANES, Normalization, Pool};
 use crate::film::Film;
 use crate::math::{Rng, Stream, TorusStep};
 use crate::parallel::{self, Stop};
@@ -58,10 +58,11 @@ impl PrimaryEnsemble {
     /// `on_progress` hears the number of samples drawn for the seeds.
     pub fn new(
         scene: &Scene,
-        settings: (&EnsembleSettings, PrimarySettings),
+        ensemble: &EnsembleSettings,
+        settings: PrimarySettings,
         on_progress: impl FnMut(u64),
     ) -> Self {
-        Self::until(&Stop::default(), scene, settings, on_progress)
+        Self::until(&Stop::default(), scene, ensemble, settings, on_progress)
     }
 
     /// As [`PrimaryEnsemble::new`], for chains that can be told to stop: before they have seeds, there
@@ -69,7 +70,8 @@ impl PrimaryEnsemble {
     pub fn until(
         stop: &Stop,
         scene: &Scene,
-        (ensemble, settings): (&EnsembleSettings, PrimarySettings),
+        ensemble: &EnsembleSettings,
+        settings: PrimarySettings,
         on_progress: impl FnMut(u64),
     ) -> Self {
         let seed = ensemble.seed;
@@ -77,11 +79,12 @@ impl PrimaryEnsemble {
             sampler.sample(&mut Rng::new(seed, Stream::Bootstrap, number), sample);
             if sample.is_physical() { sample.intensity() } else { 0.0 }
         };
+        let (samples, threads) = (ensemble.bootstrap_samples, ensemble.threads.max(1));
+        let drawing = Drawing { samples, threads, stop };
         let pool = Pool::gather(
-            (ensemble.bootstrap_samples, ensemble.threads),
+            drawing,
             || (SceneSampler::new(scene, settings.sampler), Sample::default()),
             |state, numbers| numbers.map(|number| weigh(state, number)).collect(),
-            stop,
             on_progress,
         );
         let camera = scene.camera();
@@ -102,10 +105,9 @@ impl PrimaryEnsemble {
             sampler.sample(&mut point.start(again), &mut sample);
             debug_assert_eq!(sample.intensity().to_bits(), intensity.to_bits(), "another sample");
             let rng = Rng::new(seed, Stream::Chain, id);
-            let chain = PrimaryChain::new(rng, (point, sample), settings.large_step);
+            let chain = PrimaryChain::new(rng, point, sample, settings.large_step);
             lanes[id as usize % LANES].chains.push(chain);
         }
-        let threads = ensemble.threads.max(1);
         Self { settings, pool, lanes, threads, stop: stop.clone() }
     }
 
@@ -138,7 +140,7 @@ impl PrimaryEnsemble {
             self.threads.min(LANES),
             self.lanes.iter_mut(),
             || (),
-            |(), lane| lane.advance(SceneSampler::new(scene, sampler), (balance, stop), steps),
+            |(), lane| lane.advance(SceneSampler::new(scene, sampler), balance, stop, steps),
         );
     }
 
@@ -150,10 +152,9 @@ impl PrimaryEnsemble {
         image
     }
 
-    /// Mean luminance of the image and its standard error, in the file's units, as the seeds tell.
-    pub fn normalization(&self, scene: &Scene) -> (f64, f64) {
-        let scale = scene.radiance_scale();
-        (self.pool.normalization() * scale, self.pool.normalization_error() * scale)
+    /// Mean luminance of the image, in the file's units, as the seeds tell.
+    pub fn normalization(&self, scene: &Scene) -> Normalization {
+        Normalization::of(&self.pool, scene)
     }
 
     /// Counts of all chains together; the strategies are [`STEPS`].
@@ -176,7 +177,8 @@ impl Lane {
     fn advance(
         &mut self,
         mut sampler: SceneSampler<'_>,
-        (balance, stop): (Balance, &Stop),
+        balance: Balance,
+        stop: &Stop,
         steps: u64,
     ) {
         for chain in &mut self.chains {

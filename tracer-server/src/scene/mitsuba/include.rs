@@ -191,7 +191,7 @@ impl Text {
             column: Some(position.col as usize),
             ..Place::line(path, position.row as usize)
         };
-        place.error(format!("this is no well-formed XML: {error}"))
+        place.error(format!("this is not well-formed XML: {error}"))
     }
 
     /// The document of the whole.
@@ -246,7 +246,8 @@ mod tests {
 
     #[test]
     fn files_lie_where_paths_lead() {
-        let parts = "<path value='parts'/><path value='more\\parts'/><include filename='part.xml'/>";
+        let parts =
+            "<path value='parts'/><path value='more\\parts'/><include filename='part.xml'/>";
         let far = PART.replace("'2'", "'3'");
         let files = [("parts/part.xml", PART), ("more/parts/part.xml", &far)];
         let scene = read(parts, &files).expect("a scene");
