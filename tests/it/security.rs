@@ -76,6 +76,7 @@ async fn another_certificate_is_not_trusted() {
     let complaint = is_kept_out(&pinned).await.to_string();
     let shown = certificate.fingerprint();
     assert!(complaint.contains(&shown.to_string()), "the user can compare: {complaint}");
+    assert!(complaint.contains(": its certificate"), "and reads no more than that: {complaint}");
     let authority = peer(&server, Trust::Authority(other.pem().0.to_owned()), DRIVER);
     let complaint = is_kept_out(&authority).await;
     assert!(matches!(complaint, SessionError::Untrusted { .. }), "{complaint}");

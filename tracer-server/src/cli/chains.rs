@@ -196,10 +196,16 @@ impl ChainArgs {
         .collect();
         ensure!(
             idle.is_empty(),
-            "{} would have no effect: {} has no {}; leave it out, or use --integrator mlt",
+            "{} would have no effect: {} {}; leave it out, or use --integrator mlt",
             idle.join(", "),
             Integrator::from(integrator).name(),
-            if has_chains { "mutation strategies" } else { "Markov chains" },
+            if has_strategies {
+                "finds out by itself how many chains it needs"
+            } else if has_chains {
+                "has no mutation strategies"
+            } else {
+                "has no Markov chains"
+            },
         );
         Ok(())
     }

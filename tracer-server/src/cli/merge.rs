@@ -5,7 +5,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::Context as _;
+use anyhow::{Context as _, anyhow};
 use clap::Args;
 use comfy_table::Table;
 use comfy_table::presets::UTF8_FULL_CONDENSED;
@@ -13,7 +13,7 @@ use host::file::Place;
 
 use crate::image_file::Destination;
 use crate::render::auto::{of_part, planes};
-use crate::replicate::{Part, Selection};
+use crate::replicate::{Part, PartError, Selection};
 
 /// Adds up films of replicates: bit for bit the picture of a single run.
 ///
@@ -44,16 +44,21 @@ pub(super) fn read(file: &Path) -> anyhow::Result<Part> {
     Part::read(opened).with_context(name)
 }
 
-/// Writes a film of replicates: beside the file, and then in its place, so that there is always a whole
-/// one.
-pub(super) fn write(file: &Path, part: &Part) -> anyhow::Result<()> {
-    Place::find(file)?.write(|out| part.write(out))?;
-    Ok(())
+/// Writes a film of replicates: beside its place, and then there, so that there is always a whole one.
+pub(super) fn write(place: &Place, part: &Part) -> anyhow::Result<()> {
+    place.write(|out| part.write(out)).map_err(|error| {
+        if let PartError::File(problem) = error {
+            anyhow!("cannot write `{}`: {problem}", place.path().display())
+        } else {
+            error.into()
+        }
+    })
 }
 
 /// Adds up, writes the picture and tells how far the parts disagree.
 pub fn run(args: &MergeArgs) -> anyhow::Result<ExitCode> {
     let output = Destination::find(&args.output)?;
+    let film_out = args.film_out.as_deref().map(Place::find).transpose()?;
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED).set_header([
         "film",
@@ -93,8 +98,8 @@ pub fn run(args: &MergeArgs) -> anyhow::Result<ExitCode> {
     let metadata: Vec<_> =
         metadata.into_iter().map(|(key, value)| (format!("lvis.{key}"), value)).collect();
     output.write(&image, &planes(&ledger, scale), &metadata)?;
-    if let Some(file) = &args.film_out {
-        write(file, &sum)?;
+    if let Some(place) = &film_out {
+        write(place, &sum)?;
     }
     let mut out = io::stdout().lock();
     writeln!(out, "{}", table.trim_fmt())?;

@@ -22,7 +22,7 @@ impl Source {
                 0 => String::new(),
                 more => format!(" ({more} more in the Playback panel)"),
             };
-            status.say(Err(format!("in {name}, {warning}{more}")));
+            status.warn(&format!("in {name}, {warning}{more}"));
         }
         let model = Model::new(playable.mesh.clone());
         let bounds = playable.bounds();

@@ -160,13 +160,24 @@ impl Status {
 
     /// Says something to the user.
     pub fn say(&mut self, said: Result<String, String>) {
-        let is_bad = said.is_err();
-        let text = said.unwrap_or_else(|problem| problem);
-        let text = format::sentence(&text);
-        if is_bad && self.failures.len() < MOST_FAILURES {
-            self.failures.push(text.clone());
+        match said {
+            Ok(text) => self.show(&text, false),
+            Err(problem) => {
+                if self.failures.len() < MOST_FAILURES {
+                    self.failures.push(format::sentence(&problem));
+                }
+                self.show(&problem, true);
+            }
         }
-        self.notice = Some(Notice { text, is_bad, at: Instant::now() });
+    }
+
+    /// Tells the user of something that is not as it should be, although what was asked for is done.
+    pub fn warn(&mut self, problem: &str) {
+        self.show(problem, true);
+    }
+
+    fn show(&mut self, text: &str, is_bad: bool) {
+        self.notice = Some(Notice { text: format::sentence(text), is_bad, at: Instant::now() });
     }
 
     /// What went wrong since the last call, for use without a window.

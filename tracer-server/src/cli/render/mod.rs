@@ -162,6 +162,7 @@ struct Job {
     reference: Option<Film>,
     image: Destination,
     stats: Option<Place>,
+    film_out: Option<Place>,
     replicates: ReplicateArgs,
 }
 
@@ -172,6 +173,7 @@ impl Job {
         let dial = args.replicates.dial(args.integrator)?;
         let image = Destination::find(&args.output)?;
         let stats = args.stats_json.as_deref().map(Place::find).transpose()?;
+        let film_out = args.replicates.film_out.as_deref().map(Place::find).transpose()?;
         ensure!(
             args.stats_json.as_ref() != Some(&args.output),
             "--stats-json and --output name the same file"
@@ -192,7 +194,7 @@ impl Job {
             dial,
         };
         let replicates = args.replicates.clone();
-        Ok(Self { scene, settings, reference, image, stats, replicates })
+        Ok(Self { scene, settings, reference, image, stats, film_out, replicates })
     }
 
     fn run(&self, stopper: &Stopper) -> anyhow::Result<ExitCode> {
@@ -200,7 +202,8 @@ impl Job {
         let begun = self.replicates.begun()?;
         let what = format!("{}, {}", scene.name(), settings.integrator.name());
         let meter = Meter::new(what, "rendered");
-        let Rendering { image, mut report, errors } = self.make(begun, stopper.stop(), &meter)?;
+        let (rendering, kept) = self.make(begun, stopper.stop(), &meter)?;
+        let Rendering { image, mut report, errors } = rendering;
         meter.finish();
         let stopped = if report.stopped { stopper.ending() } else { None };
         let code = stopped.map_or(ExitCode::SUCCESS, |ending| ending.exit_code().into());
@@ -224,27 +227,39 @@ impl Job {
             tracing::warn!("stopped: `{file}` holds the image of the {done} {work} so far");
         }
         self.tell(&report)?;
+        // The picture is safe; that its film is not must still be no success.
+        kept?;
         Ok(code)
     }
 
-    /// Makes the picture, and keeps its replicates where that is wanted.
-    fn make(&self, begun: Option<Part>, stop: &Stop, meter: &Meter) -> anyhow::Result<Rendering> {
+    /// Makes the picture, and keeps its replicates where that is wanted; with what came of the last time
+    /// that they were kept.
+    fn make(
+        &self,
+        begun: Option<Part>,
+        stop: &Stop,
+        meter: &Meter,
+    ) -> anyhow::Result<(Rendering, anyhow::Result<()>)> {
         let Self { scene, settings, replicates, .. } = self;
         if settings.integrator != Integrator::Auto {
-            return Ok(render_until(stop, scene, settings, |at| show(meter, at)));
+            return Ok((render_until(stop, scene, settings, |at| show(meter, at)), Ok(())));
         }
-        let mut save = |part: &Part| match &replicates.film_out {
-            Some(file) => super::merge::write(file, part),
-            None => Ok(()),
+        let mut kept = Ok(());
+        let mut save = |part: &Part| {
+            kept = self.film_out.as_ref().map_or(Ok(()), |place| super::merge::write(place, part));
+            if let Err(error) = &kept {
+                tracing::warn!("{error:#}");
+            }
         };
         let wish = Wish {
             selection: replicates.replicates.clone(),
             begun,
             until: replicates.until,
             stop: stop.clone(),
-            save: replicates.film_out.is_some().then_some(&mut save),
+            save: self.film_out.is_some().then_some(&mut save),
         };
-        auto::render(scene, settings, wish, &mut |at| show(meter, at))
+        let rendering = auto::render(scene, settings, wish, &mut |at| show(meter, at))?;
+        Ok((rendering, kept))
     }
 
     /// Prints the report, on standard error where the image itself went to standard output.

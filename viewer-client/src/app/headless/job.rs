@@ -77,12 +77,13 @@ pub fn run(mut viewer: Viewer, peer: Option<Peer>, job: Job<'_>) -> anyhow::Resu
         wait_for(&mut viewer, wait)?;
     }
     viewer.hold_back(false);
-    finish_script(&mut offscreen, &mut viewer)?;
+    let followed = finish_script(&mut offscreen, &mut viewer);
     let image = offscreen.settled(&mut viewer)?;
     place.write(|output| {
         let written = image.write_to(output, image::ImageFormat::Png);
         written.with_context(|| format!("cannot write {}", file.display()))
     })?;
+    followed?;
     let failures = viewer.take_failures();
     if failures.is_empty() { Ok(()) } else { Err(Failed(failures.join("\n")).into()) }
 }

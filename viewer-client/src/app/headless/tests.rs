@@ -12,10 +12,9 @@ pub(super) const SIZE: [u32; 2] = [1280, 720];
 const FAR: &[[f32; 3]] = &[[-400.0, 150.0, -400.0], [400.0, 150.0, -400.0]];
 const NEAR: &[[f32; 3]] = &[[-400.0, 150.0, 400.0], [400.0, 150.0, 400.0]];
 
-#[expect(clippy::print_stderr, reason = "a test that was skipped must not look as if it had run")]
 pub(super) fn offscreen() -> Option<OffscreenWindow> {
     OffscreenWindow::new(SIZE)
-        .inspect_err(|error| eprintln!("skipped, because nothing can draw here: {error:#}"))
+        .inspect_err(|error| ::tests::skip(&format!("nothing can draw here: {error:#}")))
         .ok()
 }
 

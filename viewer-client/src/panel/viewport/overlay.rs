@@ -108,15 +108,16 @@ fn nothing_found(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32)
 fn tell(painter: &Painter, rect: Rect, ink: Color32, title: &str, lines: Vec<String>) {
     let faint = ink.gamma_multiply(0.7);
     let width = (rect.width() - 2.0 * MARGIN).max(0.0);
-    let wrapped = |line| {
-        let mut job = LayoutJob::simple(line, FontId::proportional(14.0), faint, width);
+    let wrapped = |line, size, color| {
+        let mut job = LayoutJob::simple(line, FontId::proportional(size), color, width);
         job.halign = Align::Center;
         painter.layout_job(job)
     };
-    let lines: Vec<_> = lines.into_iter().map(wrapped).collect();
+    let title = wrapped(title.to_owned(), 22.0, ink);
+    let lines: Vec<_> = lines.into_iter().map(|line| wrapped(line, 14.0, faint)).collect();
     let height: f32 = lines.iter().map(|line| line.size().y + GAP).sum();
     let mut place = rect.center() - vec2(0.0, 0.5 * height);
-    painter.text(place, Align2::CENTER_BOTTOM, title, FontId::proportional(22.0), ink);
+    painter.galley(place - vec2(0.0, title.size().y), title, ink);
     place.y += 2.0 * GAP;
     for line in lines {
         let below = line.size().y + GAP;
@@ -182,4 +183,26 @@ fn text(painter: &Painter, place: Pos2, anchor: Align2, text: &str, color: Color
     let rect = anchor.anchor_size(place, galley.size());
     veil(painter, rect, color);
     painter.galley(rect.min, galley, color);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_told_in_a_narrow_view_is_not_cut_off() {
+        let view = Rect::from_min_size(pos2(40.0, 30.0), vec2(220.0, 400.0));
+        let title = "Connecting to a-machine-with-a-long-name.far-away.example:50061 …";
+        let reason = "the daemon at a-machine-with-a-long-name.far-away.example:50061 encrypts: \
+                      give the fingerprint that it told when it started (--fingerprint)";
+        let mut output = egui::Context::default().run_ui(egui::RawInput::default(), |ui| {
+            let painter = ui.painter().with_clip_rect(view);
+            tell(&painter, view, Color32::WHITE, title, vec![reason.to_owned()]);
+        });
+        // Nothing is drawn.
+        output.textures_delta.clear();
+        let written = output.shapes.iter().map(|clipped| clipped.shape.visual_bounding_rect());
+        let written = written.reduce(Rect::union).expect("something is told");
+        assert!(view.contains_rect(written), "{written:?} lies in {view:?}");
+    }
 }

@@ -61,7 +61,9 @@ fn innermost(mut error: &dyn error::Error) -> String {
     while let Some(source) = error.source() {
         error = source;
     }
-    error.to_string()
+    let text = error.to_string();
+    // How rustls begins what others have said, such as we ourselves below.
+    text.strip_prefix("unexpected error: ").unwrap_or(&text).to_owned()
 }
 
 async fn dial(

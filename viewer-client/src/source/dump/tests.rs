@@ -9,6 +9,7 @@ use glam::DVec3;
 use super::parse::Parser;
 use super::text::Lines;
 use super::*;
+use crate::source::Source;
 
 /// A path from a lamp over a mirror to the camera.
 const RECORD: &str = "\
@@ -334,7 +335,19 @@ fn a_file_is_read_in_any_encoding_and_refused_by_its_first_fault() {
 }
 
 #[test]
-#[expect(clippy::print_stderr, reason = "a test that is skipped must say so")]
+fn a_record_that_is_left_out_is_told_and_no_failure() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("paths.txt");
+    let faulty = RECORD.replace("p = [4, 4, 0]", "p = [4, nan, 0]");
+    host::file::write(&file, format!("{RECORD}{faulty}").as_bytes()).expect("writable");
+    let playable = PlayableDump::new(read(&file).expect("one path"), None);
+    let mut source = Source::file("paths.txt", playable);
+    let notice = source.status.notice.as_ref().expect("the user is told");
+    assert!(notice.is_bad && notice.text.contains("was skipped"), "{}", notice.text);
+    assert!(source.status.take_failures().is_empty(), "the file is open all the same");
+}
+
+#[test]
 fn files_of_thousands_of_paths_are_read() {
     let shared =
         std::env::var_os("LVIS_SHARED").map_or_else(|| "../../shared".into(), PathBuf::from);
@@ -345,7 +358,7 @@ fn files_of_thousands_of_paths_are_read() {
     ] {
         let file = shared.join("paths").join(name);
         if !file.exists() {
-            eprintln!("skipped: {} is not there", file.display());
+            ::tests::skip(&format!("{} is not there", file.display()));
             return;
         }
         let dump = read(&file).expect("a dump");
