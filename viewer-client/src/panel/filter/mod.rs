@@ -124,8 +124,8 @@ fn selectors(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterComma
             keys::selectors(world.settings.window.keys).map(|(key, _)| key.name());
         let text = format!(
             "Point at a surface and press {start} for a sphere in which paths start, {end} for \
-            one in which they end, {any} for one in which they have a vertex, and {all} for one \
-            that is required as well.",
+            one in which they end, {any} for spheres of which they must visit one, and {all} for \
+            spheres that they must all visit.",
         );
         ui.add(Label::new(RichText::new(text).small().weak()).wrap());
         return;
