@@ -23,11 +23,11 @@ pub struct VertexDetail {
     /// What the vertex gives to the colour of the path: emission at the start, reflectance or
     /// transmittance inside, white on the lens.
     pub color: Rgb,
-    /// Density of making it from the light side; zero where no walk makes it.
+    /// Density of making it from the light side; zero where no walk generates it.
     pub light_pdf: f64,
     /// Value over density of making it from the light side, without colour.
     pub light_weight: f64,
-    /// Density of making it from the eye side; zero where no walk makes it.
+    /// Density of making it from the eye side; zero where no walk generates it.
     pub eye_pdf: f64,
     /// Value over density of making it from the eye side, without colour.
     pub eye_weight: f64,

@@ -23,7 +23,7 @@ pub struct StrategyId(pub u8);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct MaterialId(pub u16);
 
-/// Names one state of one chain for ever.
+/// Identifies one state of one chain permanently.
 ///
 /// `step` is the trial whose acceptance made the state; a seed has step 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

@@ -1,4 +1,4 @@
-//! What a tracer tells its viewers besides paths.
+//! What a tracer tells its viewers, other than paths.
 
 use std::sync::Arc;
 

@@ -189,8 +189,7 @@ fn start(address: &str) -> Daemon {
 #[tokio::test(flavor = "multi_thread", worker_threads = 1)]
 async fn a_pulled_cable_is_noticed_and_mended() {
     let Some(cable) = Cable::lay() else {
-        let skipped = "skipped: network namespaces cannot be made here";
-        writeln!(stdout(), "{skipped}").expect("standard output");
+        tests::skip("network namespaces cannot be made here");
         return;
     };
     let daemon = start(&cable.near);

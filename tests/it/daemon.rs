@@ -17,6 +17,11 @@ use tracer_server::scene::load::load;
 pub(crate) const PATIENCE: Duration = Duration::from_mins(1);
 
 pub(crate) fn start() -> Daemon {
+    start_keeping(DaemonOptions::default().archive_bytes)
+}
+
+/// A daemon that keeps so much of what was shown.
+pub(crate) fn start_keeping(archive_bytes: usize) -> Daemon {
     let mut description = load("cornell").expect("a built-in scene").description;
     (description.width, description.height) = (40, 30);
     let scene = Arc::new(Scene::new(&description).expect("a sound scene"));
@@ -27,7 +32,7 @@ pub(crate) fn start() -> Daemon {
         ..EnsembleSettings::default()
     };
     let listen = "127.0.0.1:0".parse().expect("an address");
-    let options = DaemonOptions { listen, ensemble, ..DaemonOptions::default() };
+    let options = DaemonOptions { listen, ensemble, archive_bytes, ..DaemonOptions::default() };
     Daemon::start(scene, &options).expect("a free port")
 }
 

@@ -131,11 +131,13 @@ async fn a_path_that_is_gone_says_so_and_questions_do_not_pile_up() {
     let mut session = join(&daemon, Role::Observer).await;
     let shown = paths(&mut session).await;
     let id = shown[0].0.id;
-    let never = ask(&mut session, PathId { step: u64::MAX, ..id }).await.expect_err("no such step");
+    let never = ask(&mut session, PathId { step: u64::MAX, ..id })
+        .await
+        .expect_err("that step was not shown");
     assert!(never.contains("there is no path"), "{never}");
     let lost = PathId { chain: ChainId::EXPLORER, epoch: 9, step: 1 };
     let lost = ask(&mut session, lost).await.expect_err("the explorer was nowhere");
-    assert!(lost.contains("is gone"), "{lost}");
+    assert!(lost.contains("no longer stored"), "{lost}");
     // Somebody who asks without end is heard one question at a time, and the chains go on.
     let mut sent = 0;
     while session.say(ViewerEvent::Inspect(id)) {

@@ -69,7 +69,7 @@ impl Visitor {
                 self.path = Some(path.after(&step).expect("no step is missing"));
                 self.steps.push(Arc::unwrap_or_clone(step));
             }
-            TracerEvent::FocusGap(steps) => panic!("{steps} steps are missing"),
+            TracerEvent::FocusGap(steps) => panic!("{steps} steps were dropped"),
             TracerEvent::Notice(Notice::Explorer(state)) => self.explorer = state,
             TracerEvent::Notice(Notice::Chains(state)) => self.chains = state,
             TracerEvent::Notice(Notice::Reply(reply)) => return Some(reply),

@@ -40,7 +40,7 @@ async fn join(address: &str, greeting: Greeting) -> Session {
 }
 
 /// The newest statistics, and how long the whole snapshot took.
-async fn look(address: &str) -> (Arc<Statistics>, Duration) {
+async fn statistics_of(address: &str) -> (Arc<Statistics>, Duration) {
     let came = Instant::now();
     let mut session = join(address, Greeting::default()).await;
     let mut found = Arc::<Statistics>::default();
@@ -144,9 +144,9 @@ async fn measure(
     // Statistics are half a second and a round of the chains old at most: they are read once they are
     // from this time.
     tokio::time::sleep(Duration::from_secs(1)).await;
-    let (before, _) = look(address).await;
+    let (before, _) = statistics_of(address).await;
     tokio::time::sleep(LASTS).await;
-    let (after, _) = look(address).await;
+    let (after, _) = statistics_of(address).await;
     over.store(true, Ordering::Relaxed);
     reading.join_all().await;
     drop(stalled);
@@ -199,7 +199,7 @@ fn compare(with: &[f64], without: &[f64]) -> (f64, f64) {
 async fn viewers_cost_the_chains_little() {
     let daemon = start();
     let address = daemon.address().to_string();
-    while look(&address).await.0.totals.steps == 0 {
+    while statistics_of(&address).await.0.totals.steps == 0 {
         tokio::time::sleep(Duration::from_millis(100)).await;
     }
     let received: Vec<Arc<Received>> = CROWDS.iter().map(|_| Arc::default()).collect();
@@ -218,7 +218,7 @@ async fn viewers_cost_the_chains_little() {
             // There and back, so that what drifts hits all alike.
             let i = if round % 2 == 0 { place } else { CROWDS.len() - 1 - place };
             seen[i].push(measure(&address, CROWDS[i], &received[i]).await);
-            log.hear(began, &look(&address).await.0);
+            log.hear(began, &statistics_of(&address).await.0);
         }
     }
     over.store(true, Ordering::Relaxed);
@@ -251,7 +251,7 @@ async fn viewers_cost_the_chains_little() {
     }
     let mut joins = Vec::new();
     for _ in 0..20 {
-        joins.push(look(&address).await.1.as_secs_f64());
+        joins.push(statistics_of(&address).await.1.as_secs_f64());
     }
     let picks = pick(&address, 20).await;
     say(format!("joining takes {:.1} ms (median of 20)", 1e3 * median(&joins)));

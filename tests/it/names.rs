@@ -140,7 +140,7 @@ fn walk(trees: &[TokenTree], module: &mut Vec<String>, found: &mut Vec<Reference
                 module.pop();
                 i + 3
             }
-            (TokenTree::Ident(_), ..) => follow(trees, i, Vec::new(), module, found),
+            (TokenTree::Ident(_), ..) => read_path(trees, i, Vec::new(), module, found),
             (TokenTree::Group(group), ..) => {
                 walk(&inside(group), module, found);
                 i + 1
@@ -152,7 +152,7 @@ fn walk(trees: &[TokenTree], module: &mut Vec<String>, found: &mut Vec<Reference
 
 /// Reads the path that starts at `trees[i]` after `prefix`, expands braces of a `use`, and returns
 /// the index behind it.
-fn follow(
+fn read_path(
     trees: &[TokenTree],
     mut i: usize,
     prefix: Vec<String>,
@@ -174,7 +174,7 @@ fn follow(
         && is_path_separator(trees, i.wrapping_sub(2))
     {
         for branch in branches(group) {
-            follow(&branch, 0, segments.clone(), module, found);
+            read_path(&branch, 0, segments.clone(), module, found);
         }
         return i + 1;
     }

@@ -44,7 +44,7 @@ async fn is_let_in(peer: &Peer) {
     session.leave().await;
 }
 
-/// The complaint of whoever is not let in.
+/// The error of a viewer that is not let in.
 async fn is_kept_out(peer: &Peer) -> SessionError {
     fixture::soon("the refusal", Session::open(peer, Greeting::default()))
         .await
@@ -76,6 +76,7 @@ async fn another_certificate_is_not_trusted() {
     let complaint = is_kept_out(&pinned).await.to_string();
     let shown = certificate.fingerprint();
     assert!(complaint.contains(&shown.to_string()), "the user can compare: {complaint}");
+    assert!(complaint.contains(": its certificate"), "and reads no more than that: {complaint}");
     let authority = peer(&server, Trust::Authority(other.pem().0.to_owned()), DRIVER);
     let complaint = is_kept_out(&authority).await;
     assert!(matches!(complaint, SessionError::Untrusted { .. }), "{complaint}");
@@ -87,7 +88,10 @@ async fn plain_speech_is_not_understood_and_tokens_stay_secret() {
     let (server, _) = guarded();
     let plain = peer(&server, Trust::Plain, DRIVER);
     let complaint = is_kept_out(&plain).await.to_string();
-    assert!(complaint.contains("encrypts") && complaint.contains("--fingerprint"), "{complaint}");
+    assert!(
+        complaint.contains("uses encryption") && complaint.contains("--fingerprint"),
+        "{complaint}"
+    );
     let elsewhere = Peer { address: "192.0.2.1:1".to_owned(), ..plain };
     let complaint = is_kept_out(&elsewhere).await;
     assert!(matches!(complaint, SessionError::ExposedToken(_)), "{complaint}");
@@ -100,7 +104,7 @@ async fn who_wants_encryption_of_a_daemon_without_is_told_so() {
     let other = Certificate::self_signed(vec!["localhost".to_owned()]).expect("made");
     for trust in [Trust::Pinned(other.fingerprint()), Trust::Authority(other.pem().0.to_owned())] {
         let complaint = is_kept_out(&peer(&server, trust, "")).await.to_string();
-        assert!(complaint.contains("does not encrypt"), "{complaint}");
+        assert!(complaint.contains("does not use encryption"), "{complaint}");
     }
     fixture::stop(server).await;
 }

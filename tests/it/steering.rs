@@ -1,4 +1,4 @@
-//! Who may steer, and what everyone hears of it.
+//! Who may steer, and what everyone is told about it.
 
 use std::sync::Arc;
 use std::time::Duration;

@@ -36,7 +36,7 @@ pub struct DaemonOptions {
     pub limits: HubLimits,
     /// Bytes of what was shown lately that are kept, so that viewers can pick from it.
     pub archive_bytes: usize,
-    /// Who may connect, and whether others can listen.
+    /// Who may connect, and whether the connection is encrypted.
     pub security: Security,
 }
 
@@ -75,7 +75,7 @@ pub struct Daemon {
 }
 
 impl Daemon {
-    /// Starts the chains of `scene`, and shows them to whoever connects.
+    /// Starts the chains of `scene`, and shows them to the viewers that connect.
     pub fn start(scene: Arc<Scene>, options: &DaemonOptions) -> Result<Self, DaemonError> {
         let info = session_info(&scene, &options.ensemble);
         let (steering, orders) = steering::channel();

@@ -8,7 +8,7 @@ use thiserror::Error;
 /// Orders that may wait for the explorer, and as many for the chains.
 const WAITING: usize = 64;
 
-/// An order, with whoever gave it.
+/// An order, with its author.
 #[derive(Clone, Debug)]
 pub struct Envelope<C> {
     /// Whoever gave it.
@@ -46,14 +46,14 @@ pub struct Orders {
     pub chains: Receiver<Envelope<ChainCommand>>,
 }
 
-/// Why an order does not arrive.
+/// Why an order was not accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum NotTaken {
+pub enum OrderRefused {
     /// Too many are waiting.
-    #[error("{WAITING} orders wait already; give fewer at a time")]
+    #[error("{WAITING} orders are waiting already; send fewer at a time")]
     Busy,
     /// Nobody carries them out.
-    #[error("this daemon carries out no such orders")]
+    #[error("this daemon does not carry out such orders")]
     Nobody,
 }
 
@@ -66,18 +66,18 @@ pub fn channel() -> (Steering, Orders) {
 
 impl Steering {
     /// Orders something of the explorer.
-    pub fn explore(&self, order: Envelope<ExplorerCommand>) -> Result<(), NotTaken> {
+    pub fn explore(&self, order: Envelope<ExplorerCommand>) -> Result<(), OrderRefused> {
         self.explorer.try_send(ExplorerMail::Order(order)).map_err(|error| why(&error))
     }
 
     /// Asks for the numbers behind a path, for the viewer of a session. The explorer's thread answers: it
     /// knows how to make paths again, and no chain waits for it.
-    pub fn inspect(&self, session: u64, path: PathId) -> Result<(), NotTaken> {
+    pub fn inspect(&self, session: u64, path: PathId) -> Result<(), OrderRefused> {
         self.explorer.try_send(ExplorerMail::Inspect(session, path)).map_err(|error| why(&error))
     }
 
     /// Orders something of the chains.
-    pub fn change(&self, order: Envelope<ChainCommand>) -> Result<(), NotTaken> {
+    pub fn change(&self, order: Envelope<ChainCommand>) -> Result<(), OrderRefused> {
         self.chains.try_send(order).map_err(|error| why(&error))
     }
 
@@ -88,9 +88,9 @@ impl Steering {
     }
 }
 
-fn why<T>(error: &TrySendError<T>) -> NotTaken {
+fn why<T>(error: &TrySendError<T>) -> OrderRefused {
     match error {
-        TrySendError::Full(_) => NotTaken::Busy,
-        TrySendError::Disconnected(_) => NotTaken::Nobody,
+        TrySendError::Full(_) => OrderRefused::Busy,
+        TrySendError::Disconnected(_) => OrderRefused::Nobody,
     }
 }

@@ -7,8 +7,7 @@ use std::alloc::System;
 use common::{ChainId, Rgb};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use tracer_server::bsdf::{
-    BsdfDescription, ConductorDescription, DielectricDescription, Fresnel, LambertDescription,
-    PlasticDescription,
+    BsdfDescription, ConductorDescription, DielectricDescription, Fresnel, PlasticDescription,
 };
 use tracer_server::chain::{Chain, Ensemble, EnsembleSettings};
 use tracer_server::film::Film;
@@ -37,21 +36,14 @@ fn rough_cornell() -> SceneDescription {
     let mut description = small("cornell");
     let fresnel = Fresnel::Dielectric { eta: 1.5, tint: Rgb::WHITE };
     for material in &mut description.materials {
-        material.bsdf = match material.bsdf {
-            BsdfDescription::Lambert(LambertDescription { reflectance }) => {
-                let diffuse = reflectance;
-                PlasticDescription { diffuse, fresnel, roughness: 0.2, nonlinear: true }.into()
-            }
-            BsdfDescription::Dielectric(glass) => {
-                DielectricDescription { roughness: 0.2.into(), ..glass }.into()
-            }
-            BsdfDescription::Mirror(_)
-            | BsdfDescription::Conductor(_)
-            | BsdfDescription::Plastic(_) => ConductorDescription {
-                fresnel: Fresnel::Schlick(Rgb::grey(0.8)),
-                roughness: 0.3.into(),
-            }
-            .into(),
+        material.bsdf = if let BsdfDescription::Lambert(matt) = &material.bsdf {
+            let diffuse = matt.reflectance;
+            PlasticDescription { diffuse, fresnel, roughness: 0.2, nonlinear: true }.into()
+        } else if let BsdfDescription::Dielectric(glass) = &material.bsdf {
+            DielectricDescription { roughness: 0.2.into(), ..*glass }.into()
+        } else {
+            let fresnel = Fresnel::Schlick(Rgb::grey(0.8));
+            ConductorDescription { fresnel, roughness: 0.3.into() }.into()
         };
     }
     description

@@ -176,6 +176,8 @@ async fn a_daemon_without_file_handles_waits_and_says_so_once() {
         let share =
             (cpu_seconds(daemon.0.id()).expect("Linux") - before) / began.elapsed().as_secs_f64();
         assert!(share < 1.5, "{share} cores are busy");
+    } else {
+        tests::skip("the system tells no processor time: whether the daemon spins is not seen");
     }
     drop(idle);
     is_served(&address).await;
@@ -243,21 +245,66 @@ fn text(bytes: &[u8]) -> String {
 fn a_place_that_cannot_be_written_is_told_at_once() {
     let folder = tempfile::tempdir().expect("a folder");
     let missing = folder.path().join("no/such/folder/a.exr").display().to_string();
-    // It would go on for an hour.
-    for place in [missing.as_str(), "/proc/self/a.exr"] {
-        let arguments = ["render", "cornell", "--time", "3600", "-o", place];
+    let image = folder.path().join("a.exr").display().to_string();
+    for arguments in [
+        ["-o", &missing, "--seed", "1"],
+        ["-o", "/proc/self/a.exr", "--seed", "1"],
+        ["-o", &image, "--film-out", &missing],
+        ["-o", &image, "--stats-json", &missing],
+    ] {
+        // It would go on for an hour.
+        let mut render = program("", &["render", "cornell", "--time", "3600"]);
         let mut child =
-            Running(program("", &arguments).stderr(Stdio::piped()).spawn().expect("runs"));
-        assert_eq!(child.ends(), Some(2), "{place}");
+            Running(render.args(arguments).stderr(Stdio::piped()).spawn().expect("runs"));
+        assert_eq!(child.ends(), Some(2), "{arguments:?}");
         let mut complaint = String::new();
         child.stderr().read_to_string(&mut complaint).expect("text");
-        assert!(complaint.contains(place), "{complaint}");
+        let named = arguments.iter().any(|place| complaint.contains(&format!("`{place}`")));
+        assert!(named, "{arguments:?}: {complaint}");
+    }
+    assert!(fs::read_dir(folder.path()).expect("a folder").next().is_none(), "nothing is left");
+}
+
+/// No file may be larger than 4 blocks of 512 bytes, as on a disk that has room for no more.
+const FULL: &str = "ulimit -f 4; trap '' XFSZ;";
+
+#[test]
+fn a_write_that_fails_half_way_leaves_what_was_there() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("a.exr");
+    fs::write(&file, "old").expect("writable");
+    let image = file.display().to_string();
+    let arguments = ["render", "cornell", "--width", "64", "--height", "48", "-o", &image];
+    let arguments = [&arguments[..], &["--mutations-per-pixel", "1"]].concat();
+    // The limit fails the write, or kills the program in the midst of it.
+    for (limit, code) in [(FULL, Some(2)), ("ulimit -f 4;", None)] {
+        let output = program(limit, &arguments).output().expect("the program runs");
+        assert_eq!(output.status.code(), code, "{}", text(&output.stderr));
+        assert_eq!(fs::read(&file).expect("readable"), b"old", "{limit}");
+        let told = code.is_none() || text(&output.stderr).contains("a.exr");
+        assert!(told, "it names the file: {}", text(&output.stderr));
     }
 }
 
 #[test]
-fn a_full_disk_leaves_what_was_there() {
+fn a_film_that_cannot_be_kept_costs_no_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    let (image, film) = (path("a.png").display().to_string(), path("a.lvf").display().to_string());
+    let small = ["render", "cornell", "--width", "32", "--height", "24", "-o", &image];
+    let arguments = [&small[..], &["--mutations-per-pixel", "4", "--film-out", &film]].concat();
+    let output = program(FULL, &arguments).output().expect("the program runs");
+    let log = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{log}");
+    assert!(log.contains("error: cannot write") && log.contains("a.lvf"), "{log}");
+    assert!(fs::read(path("a.png")).expect("the picture").starts_with(b"\x89PNG"), "whole");
+    assert!(!path("a.lvf").exists(), "no half of a film");
+}
+
+#[test]
+fn a_full_device_is_told() {
     if !Path::new("/dev/full").exists() {
+        tests::skip("there is no /dev/full");
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");

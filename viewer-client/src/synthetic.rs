@@ -95,16 +95,16 @@ pub(crate) fn batch(paths: &[&[[f32; 3]]]) -> PathBatch {
 
 /// What a viewer gets in its first second.
 #[derive(Clone, Debug)]
-pub(crate) struct Delivery {
+pub(crate) struct SyntheticSession {
     pub(crate) welcome: Welcome,
     pub(crate) scene: ReceivedScene,
     pub(crate) film: FilmTile,
     pub(crate) batches: Vec<PathBatch>,
-    /// What the tracer says besides.
+    /// Further messages of the tracer.
     pub(crate) more: Vec<TracerEvent>,
 }
 
-impl Delivery {
+impl SyntheticSession {
     /// Puts all of it in.
     pub(crate) fn put(self, inbox: &Inbox) {
         let Self { welcome, scene, film, batches, more } = self;
@@ -120,11 +120,11 @@ impl Delivery {
 }
 
 /// Everything, with these paths.
-pub(crate) fn delivery(paths: &[&[[f32; 3]]]) -> Delivery {
+pub(crate) fn delivery(paths: &[&[[f32; 3]]]) -> SyntheticSession {
     let rgb = [0.1, 0.3, 0.6].repeat(40 * 30);
     let welcome = welcome();
     let (hash, frame) = (welcome.scene_hash.clone(), welcome.frame);
-    Delivery {
+    SyntheticSession {
         welcome,
         scene: ReceivedScene { hash, frame, mesh: mesh() },
         film: FilmTile { sequence: 1, width: 40, height: 30, first_row: 0, steps: 2400, rgb },

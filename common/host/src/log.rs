@@ -2,6 +2,7 @@
 
 use std::backtrace::Backtrace;
 use std::env;
+use std::ffi::OsString;
 use std::io::{self, IsTerminal as _};
 use std::panic::{self, PanicHookInfo};
 use std::thread;
@@ -11,7 +12,7 @@ use tracing_subscriber::EnvFilter;
 
 use crate::Writer;
 
-/// How long the end of a program waits for whoever reads its log.
+/// How long the end of a program waits for the reader of its log.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// The log of the program; its end is [`Log::finish`].
@@ -56,9 +57,14 @@ impl Log {
 /// True where standard error is a terminal that understands colours and whose user wants them: see
 /// no-color.org.
 fn has_colours() -> bool {
-    let is_set = |name| env::var_os(name).is_some_and(|value| !value.is_empty());
-    let is_dumb = env::var_os("TERM").is_some_and(|term| term == "dumb");
-    io::stderr().is_terminal() && !is_set("NO_COLOR") && !is_dumb
+    io::stderr().is_terminal() && wants_colours(|name| env::var_os(name))
+}
+
+/// By the variables of the environment.
+fn wants_colours(variable: impl Fn(&str) -> Option<OsString>) -> bool {
+    let is_set = |name| variable(name).is_some_and(|value| !value.is_empty());
+    let is_dumb = variable("TERM").is_some_and(|term| term == "dumb");
+    !is_set("NO_COLOR") && !is_dumb
 }
 
 fn last_words(info: &PanicHookInfo<'_>) -> String {
@@ -67,4 +73,26 @@ fn last_words(info: &PanicHookInfo<'_>) -> String {
     // Tells how to get one where RUST_BACKTRACE asks for none.
     let backtrace = Backtrace::capture();
     format!("thread '{name}' {info}\nbacktrace: {backtrace}\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_wants_no_colours_gets_none() {
+        for (variables, expected) in [
+            (&[("TERM", "xterm-256color")][..], true),
+            (&[], true),
+            (&[("NO_COLOR", "")], true),
+            (&[("NO_COLOR", "1"), ("TERM", "xterm")], false),
+            (&[("TERM", "dumb")], false),
+        ] {
+            let variable = |name: &str| {
+                let found = variables.iter().find(|(known, _)| *known == name);
+                found.map(|(_, value)| OsString::from(value))
+            };
+            assert_eq!(wants_colours(variable), expected, "{variables:?}");
+        }
+    }
 }

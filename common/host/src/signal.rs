@@ -41,7 +41,7 @@ pub struct Endings {
     interrupt: tokio::signal::unix::Signal,
     #[cfg(unix)]
     terminate: tokio::signal::unix::Signal,
-    /// None where whoever started the program had it ignore the loss of its terminal, as `nohup` does.
+    /// None if the program was started with the loss of its terminal ignored, as `nohup` does.
     #[cfg(unix)]
     hangup: Option<tokio::signal::unix::Signal>,
 }
@@ -106,7 +106,8 @@ fn hangup_is_ignored() -> bool {
     }
 }
 
-/// By what Linux tells of a process: a mask of the signals that it ignores, the first one last.
+/// From what Linux reports about a process: a mask of the signals that it ignores, lowest bit
+/// first.
 #[cfg(unix)]
 fn ignores_hangup(status: &str) -> bool {
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

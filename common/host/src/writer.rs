@@ -132,7 +132,7 @@ impl Writer {
     }
 }
 
-/// Each write is a text; for whoever formats.
+/// Each write is a text; for use by formatters.
 impl Write for Writer {
     fn write(&mut self, text: &[u8]) -> io::Result<usize> {
         self.say(text);
@@ -151,7 +151,7 @@ impl Shared {
 
     /// Writes whatever comes, until nothing more can come.
     fn serve(&self, mut sink: impl Write) {
-        // What the reader has not been told of.
+        // What the reader has not been told about.
         let mut untold = 0;
         let mut queue = self.lock();
         loop {
@@ -184,11 +184,11 @@ impl Shared {
 
 fn notice(lost: u64) -> String {
     let lines = if lost == 1 {
-        "1 line was lost here".to_owned()
+        "1 line was dropped here".to_owned()
     } else {
-        format!("{lost} lines were lost here")
+        format!("{lost} lines were dropped here")
     };
-    format!("({lines}: nobody read them in time)\n")
+    format!("({lines}: they were not read in time)\n")
 }
 
 /// The whole of `text`. A device that is busy, as terminals may be, is tried again.
@@ -275,7 +275,7 @@ mod tests {
         assert_eq!(read(&reader), "last\n");
     }
 
-    /// The number of lines that a notice tells of.
+    /// The number of lines that a notice reports.
     fn number(text: &str) -> u64 {
         let digits = text.trim_start_matches('(').split(' ').next();
         digits.and_then(|digits| digits.parse().ok()).unwrap_or_else(|| panic!("a notice: {text}"))

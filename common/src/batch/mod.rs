@@ -44,10 +44,10 @@ pub struct VertexRecord {
     pub primitive: u32,
 }
 
-/// What a record says of its path besides the vertices.
+/// What a record says about its path in addition to the vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PathHeader {
-    /// Names the path for ever.
+    /// Identifies the path permanently.
     pub id: PathId,
     /// The strategy whose proposal made it; [`Self::NO_STRATEGY`] for a seed.
     pub strategy: StrategyId,
@@ -164,7 +164,7 @@ pub struct PathBatch {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum BatchError {
     /// Columns of different length.
-    #[error("column `{column}` holds {found} entries where {expected} are due")]
+    #[error("column `{column}` holds {found} entries where {expected} are expected")]
     Length {
         /// The column's name.
         column: &'static str,
@@ -205,7 +205,7 @@ pub enum BatchError {
         index: usize,
     },
     /// A batch that says impossible things of where it comes from.
-    #[error("the batch's origin is not possible: {0}")]
+    #[error("the batch's origin is impossible: {0}")]
     Origin(&'static str),
     /// A code that this version does not know.
     #[error("column `{column}` holds the unknown code {code} at entry {index}")]
@@ -322,7 +322,7 @@ impl PathBatch {
         PathReader::new(self)
     }
 
-    /// What the records say besides the vertices, in order.
+    /// What the records say in addition to the vertices, in order.
     pub fn headers(&self) -> impl Iterator<Item = PathHeader> {
         (0..self.len()).map(|i| self.header(i))
     }

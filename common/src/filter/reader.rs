@@ -34,7 +34,7 @@ pub(super) struct Reader<'a> {
 struct Expected {
     at: usize,
     what: Vec<String>,
-    /// What is told in the place of a long list.
+    /// What is said instead of a long list.
     summary: Option<String>,
     example: Option<&'static str>,
 }

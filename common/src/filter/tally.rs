@@ -8,7 +8,7 @@ use super::miss::Lack;
 use super::{CompiledFilter, NearestMiss};
 use crate::{PathHeader, VertexRecord};
 
-/// Chains are told apart up to this many; more share an entry.
+/// Chains are counted separately up to this many; further ones share an entry.
 const MAX_CHAINS: u32 = 1 << 14;
 
 /// What a filter saw since it was set.

@@ -24,10 +24,10 @@ pub enum ChainCommand {
         /// Its weight relative to the others, at most [`MAX_WEIGHT`].
         weight: f64,
     },
-    /// Starts anew with a pool of samples that knows b, the mean luminance of the image, to this
+    /// Restarts with a pool of samples that estimates b, the mean luminance of the image, to this
     /// relative standard error, from [`LEAST_PRECISION`] to [`MOST_PRECISION`].
     SetPrecision(f64),
-    /// Starts anew, picture included, with this number of the run.
+    /// Restarts everything, the picture included, with this seed.
     Restart {
         /// The same number gives the same picture.
         seed: u64,

@@ -16,7 +16,7 @@ pub const MAX_FAN: u32 = 1000;
 pub enum ExplorerCommand {
     /// Makes a path its current state, and opens an epoch of its own.
     Seed(Seed),
-    /// Steps by itself, so many steps a second, from [`MIN_RATE`] to [`MAX_RATE`].
+    /// Steps continuously, at this many steps per second, from [`MIN_RATE`] to [`MAX_RATE`].
     Play(f32),
     /// Stands still.
     Pause,

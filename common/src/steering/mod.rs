@@ -1,4 +1,4 @@
-//! Who steers, what may be steered, and what everyone hears of it.
+//! Who steers, what can be steered, and what everyone is told about it.
 //!
 //! One viewer at a time holds the *lease* and is the driver; the others observe. Every order gets a
 //! reply, and every change is announced to everybody with the name of whoever made it.
@@ -56,7 +56,7 @@ pub struct Author {
     pub name: String,
 }
 
-/// What one viewer is told of the lease.
+/// What a viewer is told about the lease.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LeaseNotice {
     /// What happened.
@@ -76,7 +76,7 @@ pub enum LeaseEvent {
     Asked,
 }
 
-/// Where a viewer looks from, if it wishes to show that.
+/// Where a viewer looks from, if it shares that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Gaze {
     /// The eye, in scene units.
@@ -126,7 +126,7 @@ impl Presence {
     }
 }
 
-/// What viewers hear besides data: never dropped.
+/// What viewers are told in addition to data: never dropped.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Notice {
     /// Who is there.

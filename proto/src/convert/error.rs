@@ -56,7 +56,7 @@ pub enum WireError {
         wanted: &'static str,
     },
     /// A column whose length does not fit the number of entries announced.
-    #[error("column `{column}` holds {found} bytes where {expected} are due")]
+    #[error("column `{column}` holds {found} bytes where {expected} are expected")]
     ColumnLength {
         /// The column.
         column: &'static str,
@@ -83,6 +83,6 @@ pub enum WireError {
         theirs: ProtocolVersion,
     },
     /// Parts of a scene that do not make one.
-    #[error("the scene does not hold together: {0}")]
+    #[error("the scene is inconsistent: {0}")]
     Scene(&'static str),
 }

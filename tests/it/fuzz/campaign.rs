@@ -118,7 +118,7 @@ impl<'a> Search<'a> {
 
     /// Tries an input, and ends the test where that went wrong.
     fn attempt(&mut self, input: &[u8], read: &mut impl FnMut(&[u8]) -> Answer) -> Answer {
-        // Written over rather than anew, which file systems take for a wish to be safe, and are slow.
+        // Overwritten rather than replaced: file systems make replacing a file safe, which is slow.
         self.current.rewind().expect("the start");
         self.current.write_all(input).expect("the input can be kept");
         self.current.set_len(input.len() as u64).expect("the input can be kept");

@@ -10,7 +10,7 @@ use tracer_server::scene::builtin::BUILTINS;
 use tracer_server::scene::load::load;
 use viewer_client::app::share;
 use viewer_client::command::{Command, Form, forms};
-use viewer_client::source::dump::{self, Stage};
+use viewer_client::source::dump::{self, PlayableDump};
 
 use super::campaign::{Answer, Target};
 use super::mutate::Mutator;
@@ -428,9 +428,9 @@ fn any_file_of_paths_is_answered() {
             error.to_string().rsplit(": ").next().unwrap_or_default().to_owned()
         })?;
         let warnings = dump.warnings.first().cloned();
-        let stage = Stage::new(dump, None);
-        for act in &stage.acts {
-            assert!(act.vertices.iter().all(|v| v.position.iter().all(|x| x.is_finite())));
+        let playable = PlayableDump::new(dump, None);
+        for path in &playable.paths {
+            assert!(path.vertices.iter().all(|v| v.position.iter().all(|x| x.is_finite())));
         }
         Ok(warnings.unwrap_or_default())
     });

@@ -287,7 +287,7 @@ pub(super) fn with_ply() -> String {
     MITSUBA.replace("</scene>", shape)
 }
 
-/// A path as Mitsuba prints it, with what is told of its steps.
+/// A path as Mitsuba prints it, with annotations of its steps.
 pub(super) const DUMP: &str = r#"# seed chain=4 step=0 pixel=12.5,30.25 k=4 config=E - e - Sd - c - Cd
 Path[
   Vertex 0 => PathVertex[

@@ -97,14 +97,14 @@ impl Model for ConductorDescription {
     const PARAMETERS: &'static [Parameter] = &[
         Parameter {
             name: "specular",
-            about: "what it reflects at normal incidence, in [0, 1], and more at other angles by \
-                    Schlick's approximation; this, or eta and k",
+            about: "reflectance at normal incidence, in [0, 1], with Schlick's approximation for \
+                other angles; this, or eta and k",
         },
         Parameter { name: "eta", about: "index of refraction, a number or [r, g, b]" },
         Parameter { name: "k", about: "extinction coefficient, a number or [r, g, b]" },
         Parameter {
             name: "reflectance",
-            about: "beside eta and k: tint of what is reflected, in [0, 1]; default 1",
+            about: "with eta and k: tint of the reflection, in [0, 1]; default 1",
         },
         Parameter {
             name: "roughness",

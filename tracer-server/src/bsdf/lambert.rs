@@ -83,7 +83,7 @@ impl Model for LambertDescription {
     const ABOUT: &'static str = "ideal diffuse reflection";
     const PARAMETERS: &'static [Parameter] = &[Parameter {
         name: "reflectance",
-        about: "share of light reflected, in [0, 1]: a number, [r, g, b] or a texture; needed",
+        about: "share of light reflected, in [0, 1]: a number, [r, g, b] or a texture; required",
     }];
     const PLUGINS: &'static [&'static str] = &["diffuse", "roughdiffuse"];
 

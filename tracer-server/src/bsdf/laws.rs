@@ -8,7 +8,7 @@ use tests::{FALSE_ALARM, chi_square_test};
 use super::{Bsdf, Dielectric, MODELS, Scatter, specimens};
 use crate::math::{Rng, Stream, uniform_sphere};
 
-/// What the laws must be told of a model.
+/// What the laws must know about a model.
 pub(super) trait Specimens: Scatter + Copy + 'static {
     /// How far a sum over its samples may be from the truth: where weights vary, the evenness of the
     /// numbers limits what is known.
@@ -99,6 +99,23 @@ fn samples_are_unit_vectors_that_evaluate() {
             assert!(s.eye_pdf > 0.0, "{name}: drawn with no probability");
         }
         assert!(drawn > 1000, "{name}: only {drawn} samples");
+    }
+}
+
+/// A direction exactly along the surface, as between two points of one flat wall, carries nothing to
+/// either side: its density is zero, and quotients of densities would be NaN.
+#[test]
+fn nothing_is_scattered_along_the_surface() {
+    let along = DVec3::X;
+    for (name, bsdf) in models() {
+        for w in directions(200).chain([DVec3::Y]) {
+            for event in [Event::Diffuse, Event::Glossy] {
+                for (w_l, w_e) in [(along, w), (w, along)] {
+                    let found = bsdf.evaluate(DVec3::Z, w_l, w_e, event);
+                    assert_eq!(found, None, "{name}: {event:?} from {w_l} to {w_e}");
+                }
+            }
+        }
     }
 }
 

@@ -79,7 +79,8 @@ impl Model for MirrorDescription {
     const ABOUT: &'static str = "ideal mirror";
     const PARAMETERS: &'static [Parameter] = &[Parameter {
         name: "reflectance",
-        about: "share of light reflected at every angle, in [0, 1]: a number or [r, g, b]; needed",
+        about: "share of light reflected at every angle, in [0, 1]: a number or [r, g, b]; \
+            required",
     }];
 
     fn read<G: Given>(given: &mut G) -> Result<Self, G::Error> {

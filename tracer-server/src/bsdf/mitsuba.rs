@@ -52,7 +52,7 @@ const INDICES: &[(&str, f64)] = &[
 pub(super) fn roughness<G: Given>(given: &mut G) -> Result<NumberInput, G::Error> {
     let facets = given.word("distribution")?.unwrap_or_else(|| "beckmann".to_owned());
     if facets != "ggx" {
-        given.warn(&format!("its facets are those of `ggx` here, not of `{facets}`"));
+        given.warn(&format!("its microfacets follow `ggx` here, not `{facets}`"));
     }
     let alpha = given.number_input("alpha")?;
     if let Some(texture @ NumberInput::Texture { .. }) = alpha {
@@ -61,7 +61,7 @@ pub(super) fn roughness<G: Given>(given: &mut G) -> Result<NumberInput, G::Error
     match (given.number("alpha_u")?, given.number("alpha_v")?) {
         (Some(u), Some(v)) => {
             if u != v {
-                given.warn("its facets are alike in all directions: the mean is used");
+                given.warn("its microfacets are isotropic here: the mean is used");
             }
             Ok((u * v).max(0.0).sqrt().into())
         }
@@ -85,7 +85,7 @@ pub(super) fn metal<G: Given>(given: &mut G) -> Result<Fresnel, G::Error> {
             let known: Vec<&str> = METALS.iter().map(|(known, _, _)| *known).collect();
             let known = known.join(", ");
             let message =
-                format!("no metal `{name}` here; those known: {known}, none; or give eta and k");
+                format!("unknown metal `{name}`; supported: {known}, none; or give eta and k");
             given.error("material", &message)
         })?;
         (Rgb::from(metal.1), Rgb::from(metal.2))
@@ -111,7 +111,7 @@ pub(super) fn index<G: Given>(
     let found = INDICES.iter().find(|(known, _)| *known == medium.trim().to_ascii_lowercase());
     found.map(|&(_, index)| index).ok_or_else(|| {
         let known: Vec<&str> = INDICES.iter().map(|(known, _)| *known).collect();
-        let message = format!("no medium of that name; those known: {}", known.join(", "));
+        let message = format!("no medium of that name; known media: {}", known.join(", "));
         given.error(name, &message)
     })
 }

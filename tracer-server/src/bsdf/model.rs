@@ -201,7 +201,7 @@ pub trait Given {
     }
 }
 
-const COLOR_NEEDED: &str = "this model needs it: a number or [r, g, b] in [0, 1]";
+const COLOR_NEEDED: &str = "this model requires it: a number or [r, g, b] in [0, 1]";
 
 /// A number, or the name of something that has one.
 #[derive(Clone, Debug, PartialEq)]

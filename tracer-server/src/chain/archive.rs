@@ -28,16 +28,16 @@ pub struct Round {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Gone {
     /// The chains have not started, or nobody watched them.
-    #[error("no path has been shown yet; watch the chains and try again")]
+    #[error("no path has been shown yet; watch the chains for a moment and try again")]
     Empty,
     /// It was shown too long ago, or never.
     #[error(
-        "the path {0} is gone: the daemon keeps what it has shown lately, which begins with step {1} \
-         of epoch {2}; pick a newer one"
+        "the path {0} is no longer stored: the daemon keeps recently shown paths, from step {1} \
+        of epoch {2} on; pick a newer one"
     )]
     TooOld(PathId, u64, u32),
     /// Its time is kept, but it was not shown then.
-    #[error("there is no path {0}: no such step was shown and accepted")]
+    #[error("there is no path {0}: that step was not shown, or not accepted")]
     Unknown(PathId),
 }
 

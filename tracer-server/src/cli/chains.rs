@@ -15,14 +15,14 @@ use crate::scene::{Scene, StrategySetting, Wish};
 /// Seed, chains, threads and strategies.
 #[derive(Args, Clone, Debug)]
 pub struct ChainArgs {
-    /// Number of the run: the same seed gives the same result.
+    /// Seed of the random numbers: the same seed gives the same result.
     #[arg(long, default_value_t = EnsembleSettings::default().seed)]
     pub seed: u64,
     /// Number of Markov chains [default: 512 for a picture, 128 to be watched].
     #[arg(long, value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=65_536))]
     pub chains: Option<u32>,
-    /// Worker threads; as many as there are cores without.
+    /// Worker threads [default: the number of cores].
     #[arg(long, value_name = "N")]
     #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
     pub threads: Option<usize>,
@@ -41,7 +41,7 @@ pub struct StrategyArgs {
     #[arg(long, value_name = "NAME[=WEIGHT],...", value_delimiter = ',', help_heading = HEADING)]
     #[arg(long_help = strategies_help())]
     pub strategies: Vec<Weighted>,
-    /// Do without these mutation strategies.
+    /// Leave out these mutation strategies.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', help_heading = HEADING)]
     pub without: Vec<String>,
     /// Set a parameter of a strategy, such as `lens.radius=0.1..20`; may be repeated.
@@ -111,15 +111,14 @@ impl FromStr for Tuned {
 }
 
 fn number(text: &str) -> Result<f64, String> {
-    text.trim().parse().map_err(|_error| format!("`{text}` is no number"))
+    text.trim().parse().map_err(|_error| format!("`{text}` is not a number"))
 }
 
 fn strategies_help() -> String {
     let lines = KINDS.map(|kind| format!("\n  {:14} {}", kind.key(), kind.weight));
     format!(
-        "Use these mutation strategies only, with weights where given, such as \
-         `lens=0.3,bidirectional`; weights are relative to each other.\n\nThe strategies with their \
-         usual weights:{}",
+        "Use only these mutation strategies, with weights if given, such as \
+         `lens=0.3,bidirectional`; weights are relative to each other.\n\nThe strategies with their default weights:{}",
         lines.concat()
     )
 }
@@ -180,7 +179,7 @@ pub fn of_scene(settings: &[StrategySetting]) -> anyhow::Result<StrategyOptions>
 }
 
 impl ChainArgs {
-    /// Refuses options that `integrator` would not heed.
+    /// Rejects options that `integrator` would ignore.
     pub fn check(&self, integrator: IntegratorName) -> anyhow::Result<()> {
         let StrategyArgs { strategies, without, tune, adapt } = &self.strategies;
         let has_chains = matches!(integrator, IntegratorName::Mlt | IntegratorName::Pssmlt);
@@ -197,10 +196,16 @@ impl ChainArgs {
         .collect();
         ensure!(
             idle.is_empty(),
-            "{} would change nothing: {} has no {}; leave it out, or use --integrator mlt",
+            "{} would have no effect: {} {}; leave it out, or use --integrator mlt",
             idle.join(", "),
             Integrator::from(integrator).name(),
-            if has_chains { "mutation strategies" } else { "Markov chains" },
+            if has_strategies {
+                "finds out by itself how many chains it needs"
+            } else if has_chains {
+                "has no mutation strategies"
+            } else {
+                "has no Markov chains"
+            },
         );
         Ok(())
     }
@@ -215,7 +220,7 @@ impl ChainArgs {
         Ok(EnsembleSettings { chains: self.chains.unwrap_or(CHAINS_OF_A_PICTURE), ..ensemble })
     }
 
-    /// The settings of the chains on `scene`, of whose file `settings` are the wishes.
+    /// The settings of the chains on `scene`, whose file asks for `settings`.
     pub fn ensemble(
         &self,
         scene: &Scene,
@@ -225,8 +230,8 @@ impl ChainArgs {
         let names = Mixture::names_for(&strategies, scene.camera(), scene.features());
         ensure!(
             !names.is_empty(),
-            "none of the mutation strategies that are switched on can change a path of this \
-             scene; switch on others with --strategies"
+            "none of the enabled mutation strategies applies to this scene; enable others with \
+            --strategies"
         );
         let defaults = EnsembleSettings::default();
         Ok(EnsembleSettings {
@@ -302,9 +307,9 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named() {
         for (line, words) in [
-            ("--strategies lenses", "`lenses`; the strategies: bidirectional"),
+            ("--strategies lenses", "`lenses`; the strategies are bidirectional"),
             ("--without lenses", "--without: there is no strategy"),
-            ("--strategies lens=much", "`much` is no number"),
+            ("--strategies lens=much", "`much` is not a number"),
             ("--tune lens=3", "NAME.PARAMETER=VALUE"),
             ("--tune lens.radius=3..2", "MIN below MAX"),
             ("--strategies lens=0", "no strategy is left"),

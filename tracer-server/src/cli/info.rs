@@ -16,7 +16,7 @@ use crate::cli::inventory::{Inventory, LightRow, MaterialRow};
 use crate::scene::Scene;
 use crate::scene::load::load;
 
-/// Tells what a scene holds: shapes, materials, lights, camera, what is not modelled, and what the
+/// Describes a scene: shapes, materials, lights, camera, what is not modelled, and what the
 /// tracer may therefore leave out.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = examples_and_models())]
@@ -36,7 +36,7 @@ Examples:
   tracer-server info models/CornellBox-Water.obj
   tracer-server info scenes/veach-ajar --json
 
-Models of materials in .toml scenes, with their parameters:";
+Material models in .toml scenes, with their parameters:";
     let lines = |kind: &ModelKind| {
         let parameter = |p: &Parameter| format!("\n      {:14} {}", p.name, p.about);
         let parameters: String = kind.parameters.iter().map(parameter).collect();

@@ -11,17 +11,17 @@ const MAX_SIDE: i64 = 16_384;
 /// Another size of the film than the scene says.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct FilmSize {
-    /// Width of the film in pixels; the scene's own without.
+    /// Width of the film in pixels [default: the scene's own].
     #[arg(long, requires = "height", value_name = "PIXELS")]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=MAX_SIDE))]
     pub width: Option<u32>,
-    /// Height of the film in pixels; the scene's own without.
+    /// Height of the film in pixels [default: the scene's own].
     #[arg(long, requires = "width", value_name = "PIXELS")]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=MAX_SIDE))]
     pub height: Option<u32>,
 }
 
-/// Loads what the user named, and logs what it asks for in vain; also returns what its file asks of
+/// Loads what the user named, and logs what is not supported; also returns what its file asks of
 /// the mutation strategies.
 pub(super) fn scene(spec: &str, size: FilmSize) -> anyhow::Result<(Scene, Vec<StrategySetting>)> {
     scene_with_depth(spec, size, None)

@@ -10,7 +10,7 @@ use crate::bsdf::{Bsdf, BsdfDescription, Inputs as _, Value};
 use crate::scene::load::Loaded;
 use crate::scene::{Material, Mesh, Scene, SceneDescription};
 
-/// Everything that is told about a scene; lengths in the units of its file.
+/// Everything that is reported about a scene; lengths in the units of its file.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Inventory {
     /// The scene's name.
@@ -37,7 +37,7 @@ pub(crate) struct Inventory {
     pub(crate) features: Vec<&'static str>,
     /// What it may leave out.
     pub(crate) switched_off: Vec<&'static str>,
-    /// What the file asks for in vain, and what was mended.
+    /// What in the file is not supported, and what was repaired.
     pub(crate) warnings: Vec<String>,
     /// Time to read and check the files, in seconds.
     pub(crate) load_seconds: f64,

@@ -5,7 +5,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::Context as _;
+use anyhow::{Context as _, anyhow};
 use clap::Args;
 use comfy_table::Table;
 use comfy_table::presets::UTF8_FULL_CONDENSED;
@@ -13,9 +13,9 @@ use host::file::Place;
 
 use crate::image_file::Destination;
 use crate::render::auto::{of_part, planes};
-use crate::replicate::{Part, Selection};
+use crate::replicate::{Part, PartError, Selection};
 
-/// Adds films of replicates up: bit for bit the picture that one run would have made.
+/// Adds up films of replicates: bit for bit the picture of a single run.
 ///
 /// The films are those of `render --film-out`, of the same scene, version and settings, and no replicate
 /// may be in two of them. Their order makes no difference.
@@ -29,10 +29,10 @@ pub struct MergeArgs {
     /// The films.
     #[arg(required = true, value_name = "PART.lvf")]
     pub parts: Vec<PathBuf>,
-    /// Where to put the image: .exr keeps linear radiance, .png is exposed to be looked at.
+    /// Where to write the image: .exr keeps linear radiance, .png is exposed for viewing.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Where to put the sum as a film, to which more may be added.
+    /// Where to write the sum as a film, to which more can be added.
     #[arg(long, value_name = "FILE.lvf")]
     pub film_out: Option<PathBuf>,
 }
@@ -44,16 +44,21 @@ pub(super) fn read(file: &Path) -> anyhow::Result<Part> {
     Part::read(opened).with_context(name)
 }
 
-/// Writes a film of replicates: beside the file, and then in its place, so that there is always a whole
-/// one.
-pub(super) fn write(file: &Path, part: &Part) -> anyhow::Result<()> {
-    Place::find(file)?.write(|out| part.write(out))?;
-    Ok(())
+/// Writes a film of replicates: beside its place, and then there, so that there is always a whole one.
+pub(super) fn write(place: &Place, part: &Part) -> anyhow::Result<()> {
+    place.write(|out| part.write(out)).map_err(|error| {
+        if let PartError::File(problem) = error {
+            anyhow!("cannot write `{}`: {problem}", place.path().display())
+        } else {
+            error.into()
+        }
+    })
 }
 
 /// Adds up, writes the picture and tells how far the parts disagree.
 pub fn run(args: &MergeArgs) -> anyhow::Result<ExitCode> {
     let output = Destination::find(&args.output)?;
+    let film_out = args.film_out.as_deref().map(Place::find).transpose()?;
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED).set_header([
         "film",
@@ -93,8 +98,8 @@ pub fn run(args: &MergeArgs) -> anyhow::Result<ExitCode> {
     let metadata: Vec<_> =
         metadata.into_iter().map(|(key, value)| (format!("lvis.{key}"), value)).collect();
     output.write(&image, &planes(&ledger, scale), &metadata)?;
-    if let Some(file) = &args.film_out {
-        write(file, &sum)?;
+    if let Some(place) = &film_out {
+        write(place, &sum)?;
     }
     let mut out = io::stdout().lock();
     writeln!(out, "{}", table.trim_fmt())?;

@@ -4,8 +4,8 @@
 //! [`Command`], and an arm of `Command::run`. Results go to stdout, logs to stderr. Exit codes: 0
 //! done, 1 a check failed, 2 bad usage or input.
 
+pub mod access;
 pub mod chains;
-pub mod door;
 pub mod info;
 pub mod input;
 pub mod integrator;
@@ -29,7 +29,7 @@ use tracing_subscriber::EnvFilter;
 /// Bad usage or bad input.
 const BAD_INPUT: u8 = 2;
 
-/// Traces light by Metropolis light transport, and shows how it gets to the picture.
+/// Renders with Metropolis light transport, and shows how light gets to the picture.
 #[derive(Debug, Parser)]
 #[command(
     name = "tracer-server",

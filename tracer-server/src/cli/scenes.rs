@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::scene::builtin::BUILTINS;
 
-/// Lists the built-in scenes, one a line: name and what there is to see.
+/// Lists the built-in scenes, one per line: name and description.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "\
 Examples:

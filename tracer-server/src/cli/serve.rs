@@ -9,15 +9,15 @@ use clap::Args;
 use host::Writer;
 use host::signal::Endings;
 
+use super::access::AccessArgs;
 use super::chains::ChainArgs;
-use super::door::DoorArgs;
 use super::input::{self, FilmSize};
 use crate::daemon::{Daemon, DaemonOptions};
 
-/// Traces a scene for ever, and shows viewers how.
+/// Traces a scene continuously, and streams paths and image to viewers.
 ///
 /// Prints `listening on ADDR:PORT` when viewers may connect. Ctrl-C, SIGTERM and the end of its terminal
-/// end it; viewers that are connected are told. Under `nohup` it outlives its terminal.
+/// end it, and connected viewers are notified. Under `nohup` it outlives its terminal.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "\
 Examples:
@@ -32,7 +32,7 @@ pub struct ServeArgs {
     pub scene: String,
     /// Who may connect, and how.
     #[command(flatten)]
-    pub door: DoorArgs,
+    pub door: AccessArgs,
     /// The chains.
     #[command(flatten)]
     pub chains: ChainArgs,
@@ -41,7 +41,7 @@ pub struct ServeArgs {
     pub film: FilmSize,
 }
 
-/// Serves until it is told to stop.
+/// Serves until a signal stops it.
 pub fn run(args: &ServeArgs) -> anyhow::Result<ExitCode> {
     let security = args.door.security()?;
     let (scene, wishes) = input::scene(&args.scene, args.film)?;

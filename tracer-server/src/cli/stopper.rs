@@ -9,8 +9,8 @@ use host::signal::{Ending, Endings};
 
 use crate::parallel::Stop;
 
-/// Hears the signals that end a program: the first one tells the work to stop, the second one ends
-/// everything at once.
+/// Listens for signals that end a program: the first one tells the work to stop, the second one
+/// ends everything at once.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Stopper {
     stop: Stop,
@@ -18,7 +18,8 @@ pub(super) struct Stopper {
 }
 
 impl Stopper {
-    /// From now on signals end nothing by themselves. `remedy` tells what comes of the first one.
+    /// From now on signals do not end the program by themselves. `remedy` says what the first one
+    /// causes.
     pub(super) fn listen(remedy: String) -> anyhow::Result<Self> {
         let stopper = Self::default();
         let told = stopper.clone();
@@ -34,7 +35,7 @@ impl Stopper {
             let first = runtime.block_on(endings.next());
             told.ending.get_or_init(|| first);
             told.stop.set();
-            tracing::info!("{}: {remedy}; the next one ends at once", first.name());
+            tracing::info!("{}: {remedy}; a second signal ends the program at once", first.name());
             let second = runtime.block_on(endings.next());
             process::exit(i32::from(second.exit_code()));
         };

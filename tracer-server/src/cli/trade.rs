@@ -39,8 +39,8 @@ Examples:
       --setting 'all=' --setting 'plain=--without caustic,multi-chain' \\
       --setting 'space=--integrator pssmlt --primary-sampler path'
 
-Files in DIR: trade.csv (a line a run; trade.csv.part until all have ended), trade.json (a record a
-point), trade.svg (the chart), reference.exr, and the first picture of every point.
+Files in DIR: trade.csv (one line per run; trade.csv.part until all are done), trade.json (one record
+per point), trade.svg (the chart), reference.exr, and the first picture of every point.
 
 The error is the mean over the pixels of |I - R|^2 / (|R|^2 + 0.01 mean |R|^2), and \"trimmed\" leaves
 out the worst pixel in a thousand. \"bias\" is the squared systematic error as a share of the error of
@@ -48,7 +48,7 @@ one run; it scatters about zero for a setting without bias.")]
 pub struct TradeArgs {
     /// A built-in scene, a scene file, or a directory that holds one.
     pub scene: String,
-    /// The folder for the results; made where it is missing.
+    /// The folder for the results; created if it is missing.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     /// What to measure, as NAME=OPTIONS with the options of `render`; may be repeated. The others
@@ -89,7 +89,7 @@ pub struct TradeArgs {
     /// The film.
     #[command(flatten)]
     pub film: FilmSize,
-    /// Longest path in edges from light to camera; the scene's own without.
+    /// Longest path in edges from light to camera [default: the scene's own].
     #[arg(long, value_name = "EDGES")]
     #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..=MAX_EDGES as u64))]
     pub max_depth: Option<usize>,
@@ -126,11 +126,11 @@ impl FromStr for SettingText {
         let (name, options) = text.split_once('=').ok_or("give NAME=OPTIONS")?;
         let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | '+');
         if name.is_empty() || !name.chars().all(plain) {
-            return Err(format!("`{name}` is no name: use letters, digits, - _ . +"));
+            return Err(format!("`{name}` is not a valid name: use letters, digits, - _ . +"));
         }
         let words = shlex::split(options).ok_or("a quote is not closed")?;
         if let Some(word) = words.iter().find(|w| is_common(w)) {
-            return Err(format!("{word} is the same for all settings: give it by itself"));
+            return Err(format!("{word} applies to all settings: give it outside of --setting"));
         }
         let options = SettingOptions::try_parse_from(words).map_err(|error| error.to_string())?;
         Ok(Self { name: name.to_owned(), options })
@@ -171,7 +171,10 @@ impl TradeArgs {
         let texts = if self.settings.is_empty() { &usual } else { &self.settings };
         let mut settings: Vec<Setting> = Vec::new();
         for SettingText { name, options } in texts {
-            ensure!(!settings.iter().any(|s| s.name == *name), "two settings are called `{name}`");
+            ensure!(
+                !settings.iter().any(|s| s.name == *name),
+                "two settings have the name `{name}`"
+            );
             let heeded = options.chains.check(options.integrator);
             heeded.with_context(|| format!("--setting {name}"))?;
             let ensemble = options.chains.for_a_picture(scene, wishes);
@@ -200,7 +203,7 @@ impl TradeArgs {
             let missing = missing(&image);
             if missing > 0 {
                 tracing::warn!(
-                    "the reference has no value for {missing} pixels, which are left out"
+                    "the reference has no value for {missing} pixels, which are ignored"
                 );
             }
             return Ok(Reference { image, error: None });
@@ -227,7 +230,7 @@ pub fn run(args: &TradeArgs) -> anyhow::Result<ExitCode> {
     let settings = args.settings(&scene, &wishes)?;
     let budgets = args.budgets();
     fs::create_dir_all(&args.out)
-        .with_context(|| format!("the folder `{}` could not be made", args.out.display()))?;
+        .with_context(|| format!("cannot create the folder `{}`", args.out.display()))?;
     let file = |name: &str| Place::find(&args.out.join(name));
     let (json_file, chart_file) = (file("trade.json")?, file("trade.svg")?);
     let growing = Growing::begin(file("trade.csv")?)?;
@@ -307,7 +310,7 @@ fn print(out: &mut impl Write, outcome: &Outcome<'_>, budgets: &[Budget]) -> io:
             let Summary { setting, cpu_seconds, .. } = line;
             writeln!(
                 out,
-                "  {setting} in {cpu_seconds:.1} CPU s is near it: see --reference-time"
+                "  {setting} in {cpu_seconds:.1} CPU s is close to it: see --reference-time"
             )?;
         }
     }
@@ -326,7 +329,7 @@ fn table(lines: &[Summary], budgets: &[Budget]) -> Table {
         "setting",
         "budget",
         "CPU s",
-        "a pixel",
+        "per pixel",
         "relMSE",
         "10 %",
         "50 %",
@@ -341,7 +344,7 @@ fn table(lines: &[Summary], budgets: &[Budget]) -> Table {
     for line in lines {
         let budget = match budgets[line.budget] {
             Budget::Time(time) => format!("{} s", time.as_secs_f64()),
-            Budget::PerPixel(count) => format!("{count} a pixel"),
+            Budget::PerPixel(count) => format!("{count} per pixel"),
         };
         let efficiency = line.efficiency.map(|e| {
             let (low, high) = (e.ratio / e.factor, e.ratio * e.factor);
@@ -385,9 +388,9 @@ mod tests {
     fn what_is_wrong_with_a_setting_is_named() {
         for (setting, words) in [
             ("plain", "NAME=OPTIONS"),
-            ("a/b=", "no name"),
-            ("a=--seed 3", "the same for all settings"),
-            ("a=--threads=3", "the same for all settings"),
+            ("a/b=", "not a valid name"),
+            ("a=--seed 3", "applies to all settings"),
+            ("a=--threads=3", "applies to all settings"),
             ("a=--integrator magic", "possible values"),
             ("a='", "not closed"),
         ] {

@@ -32,36 +32,37 @@ Examples:
   tracer-server verify caustic --strategy caustic --tune caustic.radius=1..60 --samples 1000000
 
 The laws:
-  invariance    light that a strategy moves, rejections included, must stay distributed over paths as
-                it is: by film point, length, class, position and direction. Once with coins tossed
-                over three steps, once with ten proposals a path weighed by their acceptance.
-  flow          between any two classes of paths as much light must flow forth as back.
-  reversal      the ratio of a move and of its reverse must multiply to one, what is said to be kept
-                must be kept, and the proposal must be consistent in itself.
-  visits        chains with all strategies must be in each class as often as light is.
+  invariance    moving light by a strategy, rejections included, must not change how it is distributed
+                over paths: by film point, length, class, position and direction. Tested once over
+                three steps with random acceptance, and once with ten proposals per path, weighted
+                by their acceptance.
+  flow          between any two classes of paths, as much light must flow one way as the other.
+  reversal      the ratios of a move and its reverse must multiply to one, what is declared to be
+                kept must be kept, and the proposal must be consistent.
+  visits        chains with all strategies must visit each class in proportion to its light.
 
-A deviation is judged against a limit on |z| that all comparisons together exceed once in a million
-runs; what looks suspicious is repeated once with four times the samples before it is called wrong.")]
+A deviation fails if |z| exceeds a limit that all comparisons together would exceed once in a million
+runs. Suspicious results are repeated once with four times the samples before they count.")]
 pub struct VerifyArgs {
     /// A built-in scene, a scene file, or a directory that holds one.
     pub scene: String,
-    /// Check this strategy only; may be repeated.
+    /// Check only this strategy; may be repeated.
     #[arg(long, value_name = "NAME")]
     pub strategy: Vec<String>,
     /// How thoroughly.
     #[command(flatten)]
     pub effort: Effort,
-    /// Number of the check: the same seed gives the same report.
+    /// Seed of the random numbers: the same seed gives the same report.
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Worker threads; as many as there are cores without.
+    /// Worker threads [default: the number of cores].
     #[arg(long, value_name = "N")]
     #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
     pub threads: Option<usize>,
     /// The film.
     #[command(flatten)]
     pub film: FilmSize,
-    /// Longest path in edges from light to camera; the scene's own without.
+    /// Longest path in edges from light to camera [default: the scene's own].
     #[arg(long, value_name = "EDGES")]
     #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..=MAX_EDGES as u64))]
     pub max_depth: Option<usize>,
@@ -160,7 +161,7 @@ fn print(out: &mut impl Write, report: &Report) -> io::Result<()> {
     if !report.switched_off.is_empty() {
         writeln!(
             out,
-            "Off, because the scene has no use for them or by choice: {}",
+            "Off, because they do not apply to the scene or were switched off: {}",
             report.switched_off.join(", ")
         )?;
     }
@@ -202,28 +203,28 @@ fn conclude(out: &mut impl Write, report: &Report) -> io::Result<()> {
     if unjudged > 0 {
         writeln!(
             out,
-            "{unjudged} checks saw too few moves to judge by: raise --samples, or choose a scene \
-             whose light takes such paths"
+            "{unjudged} checks saw too few moves to judge: raise --samples, or choose a scene \
+            whose light takes such paths"
         )?;
     }
     if report.has_failed() {
-        writeln!(out, "A law is broken: images of these strategies would be wrong.")
+        writeln!(out, "A law is broken: images made with these strategies would be wrong.")
     } else {
-        writeln!(out, "No law is broken, as far as was judged.")
+        writeln!(out, "No law is broken, as far as could be judged.")
     }
 }
 
 fn meaning(law: &str) -> &'static str {
     match law {
         "invariance, 3 steps" | "invariance, proposals" => {
-            "the strategy moves light to where it does not belong. The quantities named tell where: \
+            "the strategy moves light to where it does not belong. The quantities above show where: \
              film rows and columns near the border point to proposals off the film that are drawn \
              again or clamped; lengths and classes to a selection probability that is missing in one \
              direction; cosines and distances to a density in the wrong measure."
         }
         "flow between classes" => {
-            "more light goes from one class to the other than comes back: the strategy's transition \
-             gives moves between just these classes the wrong weight in one direction."
+            "more light goes from one class to the other than comes back: the strategy's \
+            `transition` gives moves between these classes the wrong weight in one direction."
         }
         "reversal" => {
             "`reverse` does not name the move that leads back, `kept` names vertices that change, or \
@@ -240,20 +241,20 @@ fn meaning(law: &str) -> &'static str {
 fn advice(law: &str) -> &'static str {
     match law {
         "visits of classes" => {
-            "each of these carries more than 0.01 % of the light, but the chains did not come by: \
-             more steps, or a strategy that gets there, would help."
+            "each of these carries more than 0.01 % of the light, but no chain got there: more \
+            steps, or a strategy that reaches them, would help."
         }
         "longest rejection run" => {
-            "one path stands for so much of the image that it may show as a bright dot; more chains \
-             or a strategy that can leave it would help."
+            "one path carries so much of the image that it may show as a bright dot; more chains, \
+            or a strategy that can leave it, would help."
         }
         "from the rarest classes" => {
-            "chains that start in rare classes have not forgotten it after half their steps: the \
-             image is right on average, but slow to become smooth."
+            "chains that started in rare classes still show it after half of their steps: the \
+            image is right on average, but converges slowly."
         }
         "ways between classes" => {
-            "without starting anew, chains were not seen to get from one island to the other, so \
-             these depend on the independent mutation."
+            "no chain got from one of these islands to the other without starting afresh, so they \
+            depend on the independent mutation."
         }
         _ => "see `tracer-server verify --help`.",
     }

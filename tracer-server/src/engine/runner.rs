@@ -24,7 +24,7 @@ const PAUSE: Duration = Duration::from_millis(100);
 const MOST_SAMPLES: u64 = 1 << 22;
 /// And at least.
 const LEAST_SAMPLES: u64 = 1 << 12;
-/// Relative standard error of `b` that is told of until somebody asks for another.
+/// Relative standard error of `b` above which viewers are warned, unless another one was requested.
 const USUAL_PRECISION: f64 = 0.01;
 
 /// Runs the chains of a scene round by round, and does in between what the driver asks for.
@@ -41,7 +41,7 @@ pub(super) struct ChainRunner<'a> {
     running: bool,
     /// What was changed last, and by whom.
     change: (String, Option<Author>),
-    /// Viewers have not been told of a change yet.
+    /// Viewers have not been told about a change yet.
     is_change_unsent: bool,
     /// A reply that found no room; no order is followed before it is given.
     unsent_reply: Option<(u64, OrderReply)>,
@@ -122,7 +122,7 @@ impl<'a> ChainRunner<'a> {
             self.hub.publish_paths(batch);
         }
         if self.reporter.is_due() {
-            // Kept before they are told of, for the same reason.
+            // Stored before viewers are told, for the same reason.
             self.archive.keep(self.ensemble.longest_stays());
         }
         self.reporter.report(self.scene, &self.ensemble, self.epoch, self.hub);
@@ -153,7 +153,7 @@ impl<'a> ChainRunner<'a> {
             }
             ChainCommand::Resume => {
                 self.running = true;
-                Ok("let the chains go on".to_owned())
+                Ok("resumed the chains".to_owned())
             }
             ChainCommand::SetWeight { strategy, weight } => self.set_weight(strategy, weight),
             ChainCommand::SetPrecision(precision) => {
@@ -164,11 +164,14 @@ impl<'a> ChainRunner<'a> {
                 self.precision = precision;
                 self.settings.bootstrap_samples =
                     (samples as u64).clamp(LEAST_SAMPLES, MOST_SAMPLES);
-                Ok(self.restart(format!("started anew, with b known to {precision}"), author))
+                Ok(self.restart(
+                    format!("restarted the chains, with b estimated to {precision}"),
+                    author,
+                ))
             }
             ChainCommand::Restart { seed } => {
                 self.settings.seed = seed;
-                Ok(self.restart(format!("started anew with seed {seed}"), author))
+                Ok(self.restart(format!("restarted the chains with seed {seed}"), author))
             }
         }
     }
@@ -180,13 +183,15 @@ impl<'a> ChainRunner<'a> {
         let (Some(slot), Some(name)) = (weights.get_mut(index), names.get(index)) else {
             let all: Vec<_> = names.iter().enumerate().map(|(i, n)| format!("{i} {n}")).collect();
             return Err(format!(
-                "no strategy has the number {index}; there are {}",
+                "there is no strategy number {index}; the strategies are {}",
                 all.join(", ")
             ));
         };
         *slot = weight;
         if !weights.iter().any(|&weight| weight > 0.0) {
-            return Err("no strategy would be left; give another one a weight first".to_owned());
+            return Err(
+                "no strategy would be left; give another one a positive weight first".to_owned()
+            );
         }
         self.epoch += 1;
         self.ensemble.begin_epoch(self.epoch, &weights);
@@ -194,16 +199,16 @@ impl<'a> ChainRunner<'a> {
         Ok(format!("set the weight of {name} to {weight}"))
     }
 
-    /// Starts anew with the settings as they are now. That takes a moment, and everyone hears why.
+    /// Restarts with the current settings. That takes a moment, and everyone is told why.
     fn restart(&mut self, change: String, author: &Author) -> String {
         let state = ChainState {
             running: false,
-            change: "starts anew".to_owned(),
+            change: "is restarting".to_owned(),
             by: Some(author.clone()),
             ..self.state()
         };
         if !self.hub.publish_chains(state) {
-            warn!("viewers were not told that the chains start anew");
+            warn!("viewers were not told that the chains are restarting");
         }
         self.ensemble = seeded(self.scene, &self.settings);
         self.epoch += 1;
@@ -256,7 +261,7 @@ fn describe(scene: &Scene, ensemble: &Ensemble) {
     let Normalization { b, error } = ensemble.normalization(scene);
     info!("{} chains; mean luminance {b:.4} +- {error:.1e}", ensemble.chain_count());
     if error > 0.01 * b {
-        warn!("the mean luminance is known to {:.1} % only", 100.0 * error / b);
+        warn!("the mean luminance is only known to within {:.1} %", 100.0 * error / b);
     }
     for prospect in ensemble.prospects() {
         info!("{prospect}");

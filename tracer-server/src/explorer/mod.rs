@@ -32,7 +32,7 @@ use walker::{Progress, Walker};
 const BURST: u32 = 20;
 /// See [`BURST`].
 const REST: Duration = Duration::from_millis(1);
-/// A skip that has not found what it looks for ends after so many steps.
+/// A skip that has not reached its goal ends after this many steps.
 const LONGEST_SKIP: u64 = 1_000_000;
 /// Steps that are made up for after the thread was late.
 const MOST_DUE: u32 = 64;
@@ -63,7 +63,7 @@ impl Explorer {
             walker: Walker::new(scene, seed),
             archive,
             hub,
-            pace: Going::Paused,
+            pace: Motion::Paused,
             rate: 1.0,
             by: None,
             reported: Instant::now(),
@@ -90,11 +90,11 @@ impl Drop for Explorer {
 
 /// How the explorer moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Going {
+enum Motion {
     Paused,
     /// The next step is due then.
     Playing(Instant),
-    /// Until the goal is reached, or so many steps are taken.
+    /// Until the goal is reached, or this many steps are taken.
     Skipping(Goal, u64),
 }
 
@@ -123,7 +123,7 @@ struct ExplorerLoop {
     walker: Walker,
     archive: Arc<Archive>,
     hub: Hub,
-    pace: Going,
+    pace: Motion,
     rate: f32,
     by: Option<Author>,
     reported: Instant,
@@ -134,12 +134,12 @@ impl ExplorerLoop {
         self.announce();
         while !stop.load(Ordering::Relaxed) {
             let wait = match self.pace {
-                Going::Skipping(..) => Some(REST),
-                Going::Playing(due) if self.hub.wants_focus() => {
+                Motion::Skipping(..) => Some(REST),
+                Motion::Playing(due) if self.hub.wants_focus() => {
                     Some(due.saturating_duration_since(Instant::now()))
                 }
                 // Nobody would see it.
-                Going::Playing(_) | Going::Paused => None,
+                Motion::Playing(_) | Motion::Paused => None,
             };
             let mail = match wait {
                 None => orders.recv().map_err(RecvTimeoutError::from),
@@ -157,7 +157,7 @@ impl ExplorerLoop {
 
     /// What was due while nobody watched is not made up for.
     fn wake(&mut self) {
-        if let Going::Playing(due) = &mut self.pace {
+        if let Motion::Playing(due) = &mut self.pace {
             *due = (*due).max(Instant::now());
         }
     }
@@ -187,15 +187,15 @@ impl ExplorerLoop {
             ExplorerCommand::Seed(seed) => {
                 let news = self.walker.seed(seed, &self.archive)?;
                 self.hub.publish_focus(news);
-                if matches!(self.pace, Going::Skipping(..)) {
-                    self.pace = Going::Paused;
+                if matches!(self.pace, Motion::Skipping(..)) {
+                    self.pace = Motion::Paused;
                 }
             }
             ExplorerCommand::Play(rate) => {
                 self.rate = rate;
-                self.pace = Going::Playing(Instant::now() + self.period());
+                self.pace = Motion::Playing(Instant::now() + self.period());
             }
-            ExplorerCommand::Pause => self.pace = Going::Paused,
+            ExplorerCommand::Pause => self.pace = Motion::Paused,
             ExplorerCommand::Step(count) => self.skip(Goal::Steps, count.into()),
             ExplorerCommand::Skip(to) => {
                 if let SkipTo::Strategy(strategy) = to {
@@ -225,23 +225,27 @@ impl ExplorerLoop {
             return Ok(());
         }
         let numbered: Vec<_> = names.iter().enumerate().map(|(i, n)| format!("{i} {n}")).collect();
-        Err(format!("no strategy has the number {}; there are {}", strategy.0, numbered.join(", ")))
+        Err(format!(
+            "there is no strategy number {}; the strategies are {}",
+            strategy.0,
+            numbered.join(", ")
+        ))
     }
 
     /// Begins a skip with its first burst, so that a single step is seen at once.
     fn skip(&mut self, goal: Goal, steps: u64) {
-        self.pace = Going::Skipping(goal, steps);
+        self.pace = Motion::Skipping(goal, steps);
         self.take_due_steps();
     }
 
     /// Takes the steps that are due.
     fn take_due_steps(&mut self) {
         match self.pace {
-            Going::Paused => return,
-            Going::Playing(due) => self.play(due),
-            Going::Skipping(goal, left) => self.burst(goal, left),
+            Motion::Paused => return,
+            Motion::Playing(due) => self.play(due),
+            Motion::Skipping(goal, left) => self.burst(goal, left),
         }
-        if self.pace == Going::Paused || self.reported.elapsed() >= REPORT_INTERVAL {
+        if self.pace == Motion::Paused || self.reported.elapsed() >= REPORT_INTERVAL {
             self.report();
         }
     }
@@ -255,19 +259,19 @@ impl ExplorerLoop {
             self.step();
             due += period;
         }
-        self.pace = Going::Playing(due.max(now));
+        self.pace = Motion::Playing(due.max(now));
     }
 
     fn burst(&mut self, goal: Goal, left: u64) {
         let count = left.min(BURST.into());
         for _ in 0..count {
             if goal.is_reached(&self.step()) {
-                self.pace = Going::Paused;
+                self.pace = Motion::Paused;
                 return;
             }
         }
         let left = left - count;
-        self.pace = if left > 0 { Going::Skipping(goal, left) } else { Going::Paused };
+        self.pace = if left > 0 { Motion::Skipping(goal, left) } else { Motion::Paused };
     }
 
     fn step(&mut self) -> Arc<FocusStep> {
@@ -296,9 +300,9 @@ impl ExplorerLoop {
         let Progress { steps, accepted } = self.walker.progress();
         let state = ExplorerState {
             pace: match self.pace {
-                Going::Paused => Pace::Paused,
-                Going::Playing(_) => Pace::Playing,
-                Going::Skipping(..) => Pace::Skipping,
+                Motion::Paused => Pace::Paused,
+                Motion::Playing(_) => Pace::Playing,
+                Motion::Skipping(..) => Pace::Skipping,
             },
             rate: self.rate,
             allowed: if self.walker.is_seeded() { self.walker.allowed() } else { StrategySet::ALL },

@@ -117,7 +117,7 @@ impl Walker {
             Seed::Path(id) => id,
             Seed::Newest => archive
                 .newest_path()
-                .ok_or("no path has been shown yet; watch the chains and try again")?,
+                .ok_or("no path has been shown yet; watch the chains for a moment and try again")?,
         };
         let (path, round) = self.path(origin, archive)?;
         let kernel = restricted(&round.kernel, self.allowed)?;
@@ -131,10 +131,12 @@ impl Walker {
         if id.chain == ChainId::EXPLORER {
             let known = self.memory.iter().find(|checkpoint| checkpoint.id() == id);
             let (checkpoint, walk) = known.zip(self.walk.as_ref()).ok_or_else(|| {
-                format!("the path {id} is gone: the explorer keeps its last {MEMORY} paths")
+                format!(
+                    "the path {id} is no longer stored: the explorer keeps its last {MEMORY} paths"
+                )
             })?;
             let chain = Chain::resume(&scene, checkpoint, &walk.kernel)
-                .map_err(|failure| format!("the path {id} is no path: {}", failure.name()))?;
+                .map_err(|failure| format!("{id} is not a valid path: {}", failure.name()))?;
             return Ok((chain.current().clone(), Arc::clone(&walk.round)));
         }
         // The explorer's own film must not see steps that only find a path, or find none.
@@ -146,7 +148,7 @@ impl Walker {
     pub(super) fn detail(&self, id: PathId, archive: &Archive) -> Result<PathDetail, String> {
         let (path, _) = self.path(id, archive)?;
         path.detail(&Tracer::new(&self.scene))
-            .map_err(|failure| format!("the path {id} is no path: {}", failure.name()))
+            .map_err(|failure| format!("{id} is not a valid path: {}", failure.name()))
     }
 
     /// Restricts which strategies may act; the path stays, in an epoch of its own.
@@ -178,7 +180,7 @@ impl Walker {
         self.remember();
     }
 
-    /// What is told of a path that no step has led to.
+    /// What is reported about a path that no step has led to.
     fn arrived(&self) -> FocusNews {
         let after = self.current().map_or_else(Arc::default, Arc::clone);
         FocusNews { step: None, after }
@@ -364,7 +366,7 @@ fn restricted(kernel: &Kernel, set: StrategySet) -> Result<Kernel, String> {
     };
     let weights: Vec<f64> = mixture.weights().iter().enumerate().map(keep).collect();
     if !weights.iter().any(|&weight| weight > 0.0) {
-        return Err("none of the strategies that may act is switched on; allow others".to_owned());
+        return Err("none of the allowed strategies is switched on; allow others".to_owned());
     }
     mixture.set_weights(&weights);
     Ok(kernel)

@@ -265,11 +265,11 @@ fn light_is_lost_right_at_a_surface() {
     assert!(share < 0.5, "{share}: no longer lost, so the documentation is out of date");
 }
 
-/// Of two lamps in one place only one counts, and whoever builds such a scene is told.
+/// Of two lamps in the same place only one counts, and there is a warning.
 #[test]
 fn a_lamp_in_the_place_of_another_is_left_out() {
     let scene = twice(6).build();
-    let told = scene.warnings().iter().any(|w| w.starts_with("2 light triangles were left out"));
+    let told = scene.warnings().iter().any(|w| w.starts_with("2 light triangles were ignored"));
     assert!(told, "{:?}", scene.warnings());
     check_all(&[row("coincident lamps", twice(6), like(base(), 1.0))]);
 }

@@ -86,7 +86,7 @@ struct Seen {
 }
 
 impl Seen {
-    fn take(&mut self, deliveries: Vec<TracerEvent>) {
+    fn receive(&mut self, deliveries: Vec<TracerEvent>) {
         for delivery in deliveries {
             match delivery {
                 TracerEvent::FocusPath(path) => self.path = Some(FocusPath::clone(&path)),
@@ -148,7 +148,7 @@ proptest! {
                 for count in 0..burst {
                     publish(&hub, walk.go(), count).await;
                 }
-                seen.take(delivered(&viewer).await);
+                seen.receive(delivered(&viewer).await);
             }
             prop_assert_eq!(seen.steps + seen.missed, walk.path.next - first, "every step");
             if walk.path.next > first {
@@ -157,7 +157,7 @@ proptest! {
             viewer.set_focus(false);
             publish(&hub, walk.go(), 0).await;
             let before = seen.steps;
-            seen.take(delivered(&viewer).await);
+            seen.receive(delivered(&viewer).await);
             prop_assert_eq!(seen.steps, before, "nothing more");
             Ok(())
         })?;
@@ -176,12 +176,12 @@ async fn a_viewer_that_keeps_up_misses_nothing_and_another_is_told() {
     for count in 0..40_000 {
         publish(&hub, walk.go(), count).await;
         if count % 500 == 0 {
-            seen.take(delivered(&reading).await);
+            seen.receive(delivered(&reading).await);
         }
     }
-    seen.take(delivered(&reading).await);
+    seen.receive(delivered(&reading).await);
     assert_eq!((seen.missed, seen.path.as_ref()), (0, Some(&*walk.path)), "nothing is missing");
-    late.take(delivered(&stalled).await);
+    late.receive(delivered(&stalled).await);
     assert!(late.missed > 10_000, "{} steps do not fit", late.missed);
     assert_eq!(late.steps + late.missed, seen.steps, "each is told of");
     assert_eq!(late.path.as_ref(), Some(&*walk.path), "it is where the explorer is");

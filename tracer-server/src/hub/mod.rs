@@ -84,7 +84,7 @@ const FOCUS_STEP_BYTES: usize = 160 + 2 * 24 * MAX_VERTICES;
 
 /// The refusal of one viewer too many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("{limit} viewers are connected, which is as many as this daemon serves; try again later")]
+#[error("{limit} viewers are connected, the most that this daemon serves; try again later")]
 pub struct HubFull {
     /// Most viewers at a time.
     pub limit: usize,
@@ -121,7 +121,7 @@ struct Lost {
     bytes: AtomicU64,
 }
 
-/// What waits for the pump besides paths.
+/// What waits for the pump, other than paths.
 #[derive(Debug)]
 enum News {
     Film(Arc<FilmFrame>),
@@ -286,7 +286,7 @@ impl Hub {
         // Where the pump is that far behind, a later snapshot will do.
         let sent = self.news.try_send(news).is_ok();
         if !sent {
-            tracing::trace!("a snapshot was skipped, the pump is behind");
+            tracing::trace!("a snapshot was skipped, because the pump is behind");
         }
         sent
     }

@@ -92,7 +92,7 @@ struct Received {
 }
 
 impl Received {
-    fn take(&mut self, deliveries: Vec<TracerEvent>) {
+    fn receive(&mut self, deliveries: Vec<TracerEvent>) {
         for delivery in deliveries {
             match delivery {
                 TracerEvent::Paths(batch) => self.take_batch(&batch),
@@ -156,7 +156,7 @@ proptest! {
             for (count, changes, reads) in sizes {
                 if changes {
                     // What was published is looked at before the filter changes.
-                    received.take(delivered(&viewer).await);
+                    received.receive(delivered(&viewer).await);
                     revision += 1;
                     filter = compiled(texts[revision as usize % texts.len()]);
                     viewer.set_filter(revision, Arc::clone(&filter));
@@ -173,12 +173,12 @@ proptest! {
                 }
                 if reads {
                     tokio::time::sleep(LONG).await;
-                    received.take(delivered(&viewer).await);
+                    received.receive(delivered(&viewer).await);
                 }
             }
-            received.take(delivered(&viewer).await);
+            received.receive(delivered(&viewer).await);
             tokio::time::sleep(LONG).await;
-            received.take(delivered(&viewer).await);
+            received.receive(delivered(&viewer).await);
             assert_eq!(received.paths, expected, "every wanted path, whole and once");
             assert_eq!(received.gap, Gap::default(), "nothing is missing");
             let last: Vec<_> = received.origins.iter().filter(|o| o.revision == revision).collect();
@@ -207,12 +207,12 @@ async fn a_budget_decimates_and_accounts_for_every_path() {
         published.extend(paths.into_iter().map(|(header, path)| (header.id, path)));
         hub.publish_paths(batch);
         tokio::time::sleep(Duration::from_millis(9)).await;
-        received.take(delivered(&viewer).await);
+        received.receive(delivered(&viewer).await);
     }
     let seconds = start.elapsed().as_secs_f64();
     for _ in 0..20 {
         tokio::time::sleep(LONG).await;
-        received.take(delivered(&viewer).await);
+        received.receive(delivered(&viewer).await);
     }
     let seen = received.origins.iter().map(|origin| origin.seen).sum::<u64>();
     assert_eq!(seen + received.gap.paths, 200_000, "every path was seen or reported");
@@ -250,7 +250,7 @@ async fn an_empty_selection_still_counts() {
     );
     tokio::time::sleep(LONG).await;
     let mut received = Received::default();
-    received.take(delivered(&viewer).await);
+    received.receive(delivered(&viewer).await);
     let [origin] = received.origins[..] else { panic!("not one batch: {received:?}") };
     assert_eq!((origin.revision, origin.source_batches), (7, 3));
     assert_eq!((origin.seen, origin.matched, origin.matched_steps), (150, 0, 0.0));

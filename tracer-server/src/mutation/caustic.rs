@@ -73,7 +73,7 @@ impl Mutation for CausticPerturbation {
     const NAME: &'static str = "caustic";
     const WEIGHT: f64 = 0.1;
     const PARAMETERS: &'static [Parameter] =
-        &[Parameter::on_film("radius", "wanted displacement of the image, in pixels")];
+        &[Parameter::on_film("radius", "intended displacement of the image, in pixels")];
 
     fn build(basis: &MixtureBasis<'_>, tuning: &Tuning) -> Self {
         let usual = Self::new(basis.camera);

@@ -43,7 +43,7 @@ impl Mutation for MultiChain {
         Parameter::on_film("radius", "displacement of the film point, in pixels"),
         Parameter {
             name: "angle",
-            about: "turn of every further chain, in radians",
+            about: "rotation of every further chain, in radians",
             form: Form::Sizes,
             lowest: 1e-9,
             highest: 3.0,

@@ -92,7 +92,7 @@ impl Mutation for Primary {
     const PARAMETERS: &'static [Parameter] = &[
         Parameter {
             name: "step",
-            about: "change of every number of a small step, of a range from 0 to 1",
+            about: "change of every number in a small step, as a share of its range from 0 to 1",
             form: Form::Sizes,
             lowest: 1e-9,
             highest: 0.5,

@@ -71,7 +71,7 @@ pub struct StrategyOptions {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum OptionError {
     /// No strategy of that name.
-    #[error("there is no strategy `{0}`; the strategies: {list}", list = strategy_list())]
+    #[error("there is no strategy `{0}`; the strategies are {list}", list = strategy_list())]
     NoStrategy(String),
     /// No parameter of that name.
     #[error("the strategy `{strategy}` has no parameter `{parameter}`; {has}")]
@@ -104,7 +104,7 @@ pub enum OptionError {
         wanted: String,
     },
     /// Everything was switched off.
-    #[error("no strategy is left; the strategies: {list}", list = strategy_list())]
+    #[error("no strategy is left; the strategies are {list}", list = strategy_list())]
     NothingLeft,
 }
 

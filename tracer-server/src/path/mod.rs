@@ -208,7 +208,7 @@ impl Path {
         Ok(path)
     }
 
-    /// Builds the path anew from its vertices and compares every cached value; false when one is
+    /// Rebuilds the path from its vertices and compares every cached value; false when one is
     /// stale.
     pub fn is_fresh(&self, scene: &Tracer<'_>) -> bool {
         Self::rebuild(scene, &self.vertices, self.film).is_ok_and(|fresh| fresh == *self)

@@ -24,7 +24,7 @@ const LOOKS: [u64; 36] = [
 const SAVING: Duration = Duration::from_secs(4);
 
 /// Keeps what there is of a picture.
-pub type Save<'a> = dyn FnMut(&Part) -> anyhow::Result<()> + Send + 'a;
+pub type Save<'a> = dyn FnMut(&Part) + Send + 'a;
 
 /// What is asked for besides the settings of every picture.
 pub struct Wish<'a> {
@@ -75,7 +75,7 @@ pub fn origin(scene: &Scene, plan: &Plan) -> Origin {
 ///
 /// # Errors
 ///
-/// Where the replicates there are do not belong to the picture, or cannot be saved.
+/// Where the replicates there are do not belong to the picture.
 pub fn render(
     scene: &Scene,
     settings: &RenderSettings,
@@ -109,7 +109,6 @@ pub fn render(
         began: wall,
         saved: Instant::now(),
         save: wish.save,
-        trouble: None,
     };
     let most = match settings.budget {
         Budget::PerPixel(n) => plan.replicates_for(n, scene.camera()),
@@ -121,9 +120,6 @@ pub fn render(
         (None, None) => job.work(&mut picture, &Selection::first(most), on_progress),
     }
     job.keep(&picture);
-    if let Some(trouble) = job.trouble {
-        return Err(trouble);
-    }
     let mut image = picture.image();
     image.scale(scene.radiance_scale());
     let (wall_seconds, cpu_seconds) = (wall.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64());
@@ -158,7 +154,6 @@ struct Job<'a, 'w> {
     began: Instant,
     saved: Instant,
     save: Option<&'w mut Save<'w>>,
-    trouble: Option<anyhow::Error>,
 }
 
 impl Job<'_, '_> {
@@ -210,13 +205,11 @@ impl Job<'_, '_> {
         }
     }
 
-    /// Keeps the replicates there are; the first trouble with that is reported at the end.
+    /// Keeps the replicates there are.
     fn keep(&mut self, picture: &Picture) {
         if let Some(save) = &mut self.save {
             let part = Part { origin: self.origin.clone(), ledger: picture.ledger.clone() };
-            if let Err(error) = save(&part) {
-                self.trouble.get_or_insert(error);
-            }
+            save(&part);
             self.saved = Instant::now();
         }
     }
@@ -294,7 +287,7 @@ pub(super) fn plain(
     settings: &RenderSettings,
     on_progress: &mut (dyn FnMut(Progress) + Send),
 ) -> Rendering {
-    // Without a film to begin with or to save, nothing can go wrong.
+    // Without a film to begin with, nothing can go wrong.
     let wish = Wish { stop: stop.clone(), ..Wish::none() };
     render(scene, settings, wish, on_progress).unwrap_or_else(|_error| Rendering {
         image: crate::film::Film::new(scene.camera().width, scene.camera().height),

@@ -65,10 +65,10 @@ pub enum PartError {
     #[error(transparent)]
     Place(#[from] host::file::FileError),
     /// It is something else.
-    #[error("this is no film of replicates, which `render --film-out` writes")]
+    #[error("this is not a film of replicates as written by `render --film-out`")]
     Foreign,
     /// It is cut short or was changed.
-    #[error("the film is damaged: its digest is not that of its content; render it again")]
+    #[error("the film is damaged, because its digest does not match its content; render it again")]
     Damaged,
     /// Two parts are of different pictures.
     #[error("the parts do not belong together: {what} is {a} in one and {b} in the other")]
@@ -81,7 +81,7 @@ pub enum PartError {
         b: String,
     },
     /// A replicate is in two parts.
-    #[error("replicate {0} is in two of the parts; leave one of them out")]
+    #[error("replicate {0} is in two of the parts; omit one of them")]
     Twice(u64),
 }
 

@@ -72,8 +72,8 @@ impl FromStr for Selection {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        const FORM: &str = "give ranges such as 0..8 or 8.., parts of others such as 12:3, or several \
-                            with commas between them";
+        const FORM: &str = "give ranges such as 0..8 or 8.., parts of replicates such as 12:3, or \
+            several separated by commas";
         let number = |text: &str| text.trim().parse::<u64>().map_err(|_error| FORM.to_owned());
         let mut selection = Self::default();
         for item in text.split(',') {
@@ -89,13 +89,13 @@ impl FromStr for Selection {
         selection.whole.sort_by_key(|range| range.start);
         if selection.whole.iter().any(|range| range.start >= range.end) {
             return Err(
-                "a range must end after it begins: 4..8 holds the numbers 4 to 7".to_owned()
+                "a range must end after its beginning: 4..8 holds the numbers 4 to 7".to_owned()
             );
         }
         let twice = selection.whole.windows(2).any(|pair| pair[0].end > pair[1].start);
         let inside = |number: u64| selection.whole.iter().any(|range| range.contains(&number));
         if twice || selection.tails.iter().any(|(number, _)| inside(*number)) {
-            return Err("no replicate may be in it twice".to_owned());
+            return Err("no replicate may appear twice".to_owned());
         }
         Ok(selection)
     }

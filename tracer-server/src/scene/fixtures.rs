@@ -386,8 +386,7 @@ fn every_kind_of_light_is_there() {
     assert_eq!(seen, [0, 1, 2, 3], "a kind of light is not among them");
 }
 
-/// The folder of scenes made by others, or `None` with a printed line.
-#[expect(clippy::print_stderr, reason = "a test that is skipped must say so")]
+/// The folder of scenes made by others; `None`, and the test is skipped, where it is not there.
 pub(crate) fn shared_scenes() -> Option<PathBuf> {
     let shared = std::env::var_os("LVIS_SHARED")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"), PathBuf::from);
@@ -395,6 +394,7 @@ pub(crate) fn shared_scenes() -> Option<PathBuf> {
     if scenes.is_dir() {
         return Some(scenes);
     }
-    eprintln!("skipped: no scenes in {}; set LVIS_SHARED to their folder", scenes.display());
+    let scenes = scenes.display();
+    tests::skip(&format!("there are no scenes in {scenes}; set LVIS_SHARED to their folder"));
     None
 }

@@ -145,7 +145,7 @@ fn notes(warnings: &[Warning]) -> String {
     notes.concat()
 }
 
-/// Validates what was read; problems and repairs are told with their place.
+/// Validates what was read; problems and repairs are reported with their place.
 fn check(read: Read) -> Result<Loaded, LoadError> {
     let Read { mut description, origins, mut warnings, strategies } = read;
     let names: Vec<String> = description.meshes.iter().map(|mesh| mesh.name.clone()).collect();
@@ -158,12 +158,10 @@ fn check(read: Read) -> Result<Loaded, LoadError> {
     for drop in dropped {
         let name = names.get(drop.mesh).map_or("", String::as_str);
         let place = origins.of(Part::Mesh(drop.mesh), "");
-        warnings.push(
-            place.warning(format!(
-                "mesh `{name}`: {} triangles without area left out",
-                drop.triangles
-            )),
-        );
+        warnings.push(place.warning(format!(
+            "mesh `{name}`: {} triangles without area were ignored",
+            drop.triangles
+        )));
     }
     Ok(Loaded { description, warnings, strategies })
 }

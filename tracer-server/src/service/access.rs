@@ -1,4 +1,4 @@
-//! Who may come in, and as what.
+//! Who may connect, and in which role.
 
 use common::Role;
 use tonic::service::Interceptor;
@@ -27,8 +27,8 @@ impl Token {
         let length = secret.len();
         if !(MIN_TOKEN_LENGTH..=MAX_TOKEN_LENGTH).contains(&length) {
             return Err(format!(
-                "a token of {length} characters: it must have {MIN_TOKEN_LENGTH} to \
-                 {MAX_TOKEN_LENGTH}; make one with `openssl rand -base64 24`"
+                "the token has {length} characters; it must have {MIN_TOKEN_LENGTH} to \
+                {MAX_TOKEN_LENGTH}: make one with `openssl rand -base64 24`"
             ));
         }
         if !secret.chars().all(|c| c.is_ascii_graphic()) {
@@ -83,8 +83,8 @@ impl Interceptor for Access {
             let peer = address.map_or_else(|| "somebody".to_owned(), |address| address.to_string());
             tracing::warn!(peer, "refused: {what}");
             let message = format!(
-                "{what}: this daemon asks for one; start the viewer with --token-file FILE, where \
-                 FILE holds the token that the daemon's owner gave you"
+                "{what}: this daemon requires one; start the viewer with --token-file FILE, where \
+                FILE holds the token that the daemon's owner gave you"
             );
             return Err(Status::unauthenticated(message));
         };

@@ -15,15 +15,15 @@ use tokio_stream::Stream;
 use tonic::transport::server::{Connected, TcpConnectInfo, TlsConnectInfo};
 use tonic::{Extensions, Status};
 
-/// Connections at a time: viewers, tools and whoever is refused.
+/// Connections at a time: viewers, tools and those that are rejected.
 pub(super) const MAX_CONNECTIONS: usize = 128;
-/// So many more are heard to be told that there is no room; yet more are closed without a word.
+/// Connections beyond the limit that are still told that the daemon is full; any others are just closed.
 const MAX_SURPLUS: usize = 16;
-/// Who is to be told that there is no room may take this long to ask.
+/// How long a peer that is to be told that the daemon is full may take to ask.
 const SURPLUS_TIME: Duration = Duration::from_secs(5);
 /// How long to wait for what the system lacks.
 const SHORTAGE: Duration = Duration::from_millis(100);
-/// Who has been told of it is not told again for so long.
+/// Minimum time between two such warnings.
 const QUIET: Duration = Duration::from_mins(1);
 
 /// What requests know of the connection that they came by.
@@ -51,8 +51,8 @@ impl Caller {
             return Ok(());
         }
         Err(Status::resource_exhausted(format!(
-            "it is full: it takes {MAX_CONNECTIONS} connections at a time; try again when somebody \
-             has left"
+            "it is full: it accepts {MAX_CONNECTIONS} connections at a time; try again when \
+            someone has left"
         )))
     }
 }
@@ -93,15 +93,15 @@ impl Incoming {
     /// Finds a place for a connection; `None` closes it.
     fn admit(&self, stream: TcpStream) -> Option<Connection> {
         if let Err(error) = stream.set_nodelay(true) {
-            tracing::debug!("a connection broke at once: {error}");
+            tracing::debug!("a connection broke immediately: {error}");
             return None;
         }
         if let Ok(place) = Arc::clone(&self.places).try_acquire_owned() {
             return Some(Connection { stream, ends: None, _place: place });
         }
         let place = Arc::clone(&self.surplus).try_acquire_owned().ok();
-        let fate = if place.is_some() { "told that there is no room" } else { "closed" };
-        tracing::warn!(limit = MAX_CONNECTIONS, "a connection too many was {fate}");
+        let fate = if place.is_some() { "told that the daemon is full" } else { "closed" };
+        tracing::warn!(limit = MAX_CONNECTIONS, "a connection beyond the limit was {fate}");
         place.map(|place| {
             let ends = Some(Box::pin(sleep(SURPLUS_TIME)));
             Connection { stream, ends, _place: place }
@@ -113,8 +113,8 @@ impl Incoming {
         if self.told.is_none_or(|told| told.elapsed() > QUIET) {
             self.told = Some(Instant::now());
             tracing::warn!(
-                "no connection can be accepted: {error}; waiting until the system has what it takes \
-                 (is `ulimit -n` too low?)"
+                "no connection can be accepted: {error}; waiting until the system has resources \
+                again (is `ulimit -n` too low?)"
             );
         }
         self.shortage = Some(Box::pin(sleep(SHORTAGE)));

@@ -73,7 +73,7 @@ impl SessionInfo {
     }
 }
 
-/// Who may come in, and whether others can listen.
+/// Who may connect, and whether the connection is encrypted.
 #[derive(Clone, Debug, Default)]
 pub struct Security {
     /// The tokens that open the door.
@@ -86,7 +86,7 @@ pub struct Security {
 #[derive(Debug, Error)]
 pub enum ServeError {
     /// The schema that was compiled in cannot be offered for reflection.
-    #[error("the protocol's schema cannot be offered for reflection")]
+    #[error("the protocol's schema cannot be provided for reflection")]
     Reflection(#[from] tonic_reflection::server::Error),
     /// The network failed.
     #[error("the network service failed")]
@@ -104,7 +104,7 @@ pub struct Backend {
     pub info: Arc<SessionInfo>,
     /// Where orders go.
     pub steering: Steering,
-    /// Who may come in.
+    /// Who may connect.
     pub security: Security,
 }
 
@@ -192,7 +192,7 @@ impl Tracer for TracerService {
         &self,
         request: Request<Streaming<v1::ViewerMessage>>,
     ) -> Result<Response<Outbound>, Status> {
-        // Who came past the door without the interceptor may watch.
+        // A request that did not pass through the interceptor may only watch.
         let allowed = request.extensions().get().map_or(Role::Observer, |&Allowed(role)| role);
         let mut inbound = request.into_inner();
         let hello = tokio::select! {

@@ -1,4 +1,4 @@
-//! Who is there, who holds the lease, and who may come back to it.
+//! Who is connected, who holds the lease, and who may get it back.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -105,7 +105,7 @@ impl Roster {
         Entry { role, resume, filter, focus }
     }
 
-    /// Lets a viewer go. Its lease goes to whoever has asked longest.
+    /// Removes a viewer. Its lease goes to the viewer that asked first.
     pub(super) fn leave(&self, session: u64) {
         let mut state = self.state();
         state.asking.retain(|&asking| asking != session);
@@ -134,10 +134,11 @@ impl Roster {
         Err(match state.driver() {
             _ if !member.may_drive => OBSERVERS_TOKEN.to_owned(),
             Some(driver) => format!(
-                "only the driver gives orders, and that is {} (session {}): ask for the lease",
+                "only the driver can give orders, and that is {} (session {}): ask for the lease",
                 driver.author.name, driver.author.session
             ),
-            None => "only the driver gives orders, and nobody is: ask for the lease".to_owned(),
+            None => "only the driver can give orders, and nobody is driving: ask for the lease"
+                .to_owned(),
         })
     }
 
@@ -168,11 +169,11 @@ impl Roster {
             }
             LeaseRequest::Release => state.asking.retain(|&asking| asking != session),
             LeaseRequest::HandOver(_) if role != Role::Driver => {
-                return Err("only the driver hands the lease over".to_owned());
+                return Err("only the driver can hand over the lease".to_owned());
             }
             LeaseRequest::HandOver(to) => {
                 let Some(heir) = state.members.get(&to) else {
-                    return Err(format!("no viewer has the session {to}"));
+                    return Err(format!("no viewer has session {to}"));
                 };
                 if !heir.may_drive {
                     return Err(format!("{}: {OBSERVERS_TOKEN}", heir.attendee.author.name));
@@ -225,7 +226,7 @@ impl Roster {
         if let Some((&session, _)) = ghost {
             state.asking.retain(|&asking| asking != session);
             let memory = state.members.remove(&session).map(|member| member.memory);
-            self.hub.dismiss(session, "the viewer came back on another connection");
+            self.hub.dismiss(session, "the viewer reconnected on another connection");
             return memory;
         }
         let fresh = |absent: &Absent| absent.since.elapsed() < ABSENCE;
@@ -233,7 +234,7 @@ impl Roster {
         state.absent.remove(found).map(|absent| absent.memory)
     }
 
-    /// Gives a free lease to whoever has asked longest.
+    /// Gives a free lease to the viewer that asked first.
     fn pass_on(&self, state: &mut State) {
         if let Some(next) = state.asking.front().copied() {
             self.grant(state, next, None);
@@ -278,7 +279,7 @@ impl Roster {
 
 /// Why some never drive.
 const OBSERVERS_TOKEN: &str =
-    "the observers' token opens no steering; connect with the driver's token";
+    "the observers' token does not allow steering; connect with the driver's token";
 
 impl State {
     fn driver(&self) -> Option<&Attendee> {
@@ -291,7 +292,9 @@ impl State {
 fn secret() -> String {
     let mut bytes = [0; RESUME_BYTES];
     if SystemRandom::new().fill(&mut bytes).is_err() {
-        tracing::warn!("the system gives no random numbers: viewers cannot resume their sessions");
+        tracing::warn!(
+            "the system provides no random numbers: viewers cannot resume their sessions"
+        );
         return String::new();
     }
     blake3::Hash::from_bytes(bytes).to_hex().to_string()

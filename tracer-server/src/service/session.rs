@@ -29,7 +29,7 @@ pub(super) async fn handshake(inbound: &mut Streaming<ViewerMessage>) -> Result<
         return Err(Status::deadline_exceeded(message));
     };
     let message = first.map_err(|status| unreadable(&status))?;
-    let message = message.ok_or_else(|| Status::invalid_argument("the viewer said nothing"))?;
+    let message = message.ok_or_else(|| Status::invalid_argument("the viewer sent nothing"))?;
     match ViewerEvent::try_from(message).map_err(|error| refusal(&error))? {
         ViewerEvent::Hello(hello) => Ok(hello),
         ViewerEvent::SetBudget(_)
@@ -161,7 +161,7 @@ impl Session {
         shutdown: CancellationToken,
     ) {
         let (session, viewer) = (self.number(), self.hello.viewer_name.clone());
-        tracing::info!(session, viewer, "a viewer came");
+        tracing::info!(session, viewer, "a viewer connected");
         let Sender { messages, last } = sender;
         let end = tokio::select! {
             biased;
@@ -175,16 +175,16 @@ impl Session {
                 return;
             }
             End::Dismissed(reason) => {
-                tracing::info!(session, viewer, reason, "a viewer was dismissed");
+                tracing::info!(session, viewer, reason, "a viewer was disconnected");
                 Ok(TracerMessage::from(&TracerEvent::Goodbye(reason)))
             }
             End::Refused(status) => {
-                tracing::warn!(session, viewer, reason = status.message(), "a viewer was refused");
+                tracing::warn!(session, viewer, reason = status.message(), "a viewer was rejected");
                 Err(status)
             }
         };
         if last.send(word).is_err() {
-            tracing::debug!(session, "the viewer did not wait for the last word");
+            tracing::debug!(session, "the viewer did not wait for the last message");
         }
     }
 
@@ -197,7 +197,7 @@ impl Session {
         let welcome = TracerMessage::from(&TracerEvent::Welcome(Box::new(welcome)));
         // The channel is empty: this does not wait.
         if messages.send(welcome).await.is_err() {
-            return End::Left("it hung up".to_owned());
+            return End::Left("it closed the connection".to_owned());
         }
         let mut listens = true;
         let mut listens_from = Instant::now();
@@ -208,7 +208,7 @@ impl Session {
             };
             tokio::select! {
                 biased;
-                () = messages.closed() => return End::Left("it hung up".to_owned()),
+                () = messages.closed() => return End::Left("it closed the connection".to_owned()),
                 reason = self.subscription.closed() => return End::Dismissed(reason),
                 message = next_message, if listens => match self.hear(message) {
                     Heard::Fine => {}
@@ -262,7 +262,7 @@ impl Session {
                 Heard::Over(End::Left(reason))
             }
             Ok(ViewerEvent::Hello(_)) => {
-                let status = Status::invalid_argument("`hello` comes once");
+                let status = Status::invalid_argument("`hello` may only be sent once");
                 Heard::Over(End::Refused(status))
             }
             Err(status) => Heard::Over(End::Refused(status)),
@@ -284,7 +284,10 @@ impl Session {
                 return;
             }
             Some(order) => self.hand_on(request, order),
-            None => Err("this daemon does not know such an order; it may be older".to_owned()),
+            None => {
+                Err("this daemon does not know that order; it may be older than the viewer"
+                    .to_owned())
+            }
         };
         if let Err(error) = done {
             self.reply(request, Some(error));
@@ -332,7 +335,7 @@ impl Session {
     /// may still replace it by something newer.
     async fn speak(&self, messages: &mpsc::Sender<TracerMessage>) -> Option<End> {
         let Ok(room) = messages.reserve().await else {
-            return Some(End::Left("it hung up".to_owned()));
+            return Some(End::Left("it closed the connection".to_owned()));
         };
         let event = self.subscription.next().await;
         if let TracerEvent::Goodbye(reason) = event {

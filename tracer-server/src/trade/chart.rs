@@ -83,6 +83,6 @@ fn range(values: impl Iterator<Item = f64>) -> anyhow::Result<std::ops::Range<f6
     let drawn = values.filter(|value| *value > 0.0 && value.is_finite());
     let (low, high) =
         drawn.fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
-    anyhow::ensure!(low <= high, "there is no error to draw: is the reference the picture itself?");
+    anyhow::ensure!(low <= high, "there is no error to plot: is the reference the picture itself?");
     Ok(low / 1.3..high * 1.3)
 }

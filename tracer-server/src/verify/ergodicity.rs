@@ -187,7 +187,7 @@ pub fn from_the_rarest(scene: &Scene, census: &Census, kernel: &Kernel, plan: &P
         _ => Verdict::Note,
     };
     let remark = format!(
-        "{} chains spread {widest:.4} times as wide together as each alone; up to {SPREAD} is quick",
+        "{} chains together spread {widest:.4} times as wide as each alone; up to {SPREAD} is fine",
         classes.len()
     );
     let samples = steps * classes.len() as u64;
@@ -205,7 +205,7 @@ fn reduction(chains: &[&Accumulator]) -> f64 {
     ((n - 1.0) / n + means.variance() / within.mean()).sqrt()
 }
 
-/// Whether moves other than starting anew join all classes that carry light.
+/// Whether moves other than fresh starts connect all classes that carry light.
 pub fn connectedness(census: &Census, flows: &Flows, samples: u64) -> Finding {
     let bright =
         |key: &ClassKey| census.classes.get(key).is_some_and(|c| census.share(c).0 >= SHARE);

@@ -48,7 +48,7 @@ pub struct Settings {
     pub options: StrategyOptions,
     /// Bidirectional samples of each test.
     pub samples: u64,
-    /// Number of the check: the same seed gives the same report.
+    /// Seed of the random numbers: the same seed gives the same report.
     pub seed: u64,
     /// Worker threads; the report does not depend on it.
     pub threads: usize,
@@ -104,12 +104,12 @@ impl Report {
 pub enum VerifyError {
     /// No sample carries light.
     #[error(
-        "no light reaches the film in {0} samples, so there is no path to start from; look at the \
-         lights and the camera with `tracer-server info`"
+        "no light reaches the film in {0} samples, so there is no path to start from; check the \
+        lights and the camera with `tracer-server info`"
     )]
     Dark(u64),
     /// The strategy is off.
-    #[error("the strategy `{0}` can do nothing on this scene, or is switched off; on: {1}")]
+    #[error("the strategy `{0}` does not apply to this scene, or is switched off; enabled: {1}")]
     NotThere(String, String),
 }
 

@@ -65,7 +65,8 @@ impl Reversals {
         // A move that could not be undone is rejected: its ratio is zero.
         if inspection.forth != 0.0 {
             let distance = (product - 1.0).abs();
-            if !(distance <= self.asymmetry) {
+            // NaN stays: no later move may hide it.
+            if !(distance <= self.asymmetry) && !self.asymmetry.is_nan() {
                 self.asymmetry = distance;
             }
         }

@@ -3,7 +3,7 @@
 use std::thread::JoinHandle;
 
 use crate::imaging::Finding;
-use crate::source::dump::Stage;
+use crate::source::dump::PlayableDump;
 
 /// Tasks that may be under way at the same time.
 const MOST: usize = 4;
@@ -25,7 +25,7 @@ pub enum TaskResult {
         /// Its name.
         name: String,
         /// What it holds.
-        stage: Box<Stage>,
+        playable: Box<PlayableDump>,
     },
 }
 
@@ -42,7 +42,7 @@ impl BackgroundTasks {
     /// Begins a task; the answer tells why it cannot begin now.
     pub fn start(&mut self, work: impl FnOnce() -> Outcome + Send + 'static) -> Result<(), String> {
         if self.threads.len() >= MOST {
-            return Err("too much is under way; try again in a moment".to_owned());
+            return Err("too many tasks are running; try again in a moment".to_owned());
         }
         let thread = std::thread::Builder::new().name("background".to_owned()).spawn(work);
         self.threads.push(thread.map_err(|error| format!("cannot start a thread: {error}"))?);
@@ -72,7 +72,7 @@ impl Drop for BackgroundTasks {
 }
 
 fn join(thread: JoinHandle<Outcome>) -> Outcome {
-    thread.join().unwrap_or_else(|_| Err("this went wrong in an unforeseen way".to_owned()))
+    thread.join().unwrap_or_else(|_| Err("an unexpected error occurred".to_owned()))
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ use serde_json::json;
 
 use crate::app::Viewer;
 use crate::app::cli::BenchArgs;
-use crate::app::headless::Stage;
+use crate::app::headless::OffscreenWindow;
 use crate::command::Command;
 use crate::source::Source;
 use crate::value::Bounds;
@@ -120,7 +120,7 @@ impl Figures {
 }
 
 fn measure(paths: u32, args: &BenchArgs) -> anyhow::Result<Figures> {
-    let mut stage = Stage::like_a_window(args.size)?;
+    let mut offscreen = OffscreenWindow::like_a_window(args.size)?;
     let mut viewer = Viewer::new(Source::daemon("nowhere".to_owned(), true));
     let corners = [[-REACH; 3], [REACH; 3]];
     viewer.show_bounds(Bounds::of(&corners).context("the box is empty")?);
@@ -128,28 +128,28 @@ fn measure(paths: u32, args: &BenchArgs) -> anyhow::Result<Figures> {
         viewer.apply(command.parse()?);
     }
     // Whatever is made once is made before.
-    stage.frame(&mut viewer)?;
+    offscreen.frame(&mut viewer)?;
     let empty = resident();
 
     let taken = fill(&mut viewer, paths, usize::from(args.vertices));
-    let first = taken + stage.frame(&mut viewer)?.wall;
+    let first = taken + offscreen.frame(&mut viewer)?.wall;
     let mut whole = first;
-    while stage.is_refining() {
-        whole += stage.frame(&mut viewer)?.wall;
+    while offscreen.is_refining() {
+        whole += offscreen.frame(&mut viewer)?.wall;
     }
     let mut turned = || {
         viewer.apply("camera orbit 1 0".parse::<Command>()?);
-        stage.frame(&mut viewer)
+        offscreen.frame(&mut viewer)
     };
     let moving = (0..FRAMES).map(|_| turned()).collect::<anyhow::Result<Vec<_>>>()?;
     let mut refined = moving.last().map_or(Duration::ZERO, |cost| cost.wall);
-    while stage.is_refining() {
-        refined += stage.frame(&mut viewer)?.wall;
+    while offscreen.is_refining() {
+        refined += offscreen.frame(&mut viewer)?.wall;
     }
     // The interface comes to rest.
-    stage.rest(&mut viewer, REST)?;
+    offscreen.rest(&mut viewer, REST)?;
     let before = ProcessTime::now();
-    let rest_frames = stage.rest(&mut viewer, REST)?;
+    let rest_frames = offscreen.rest(&mut viewer, REST)?;
     let rest = before.elapsed().div_f64(REST.as_secs_f64());
     let memory = resident();
     let picks = (0..FRAMES).map(|i| picked(&mut viewer, i)).collect::<anyhow::Result<Vec<_>>>()?;

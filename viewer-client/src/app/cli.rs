@@ -19,13 +19,13 @@ Examples:
   viewer-client 127.0.0.1:50061          a running `tracer-server serve`
   viewer-client render-box:50061 --token-file token --fingerprint 3F:A2:...
   viewer-client --headless --screenshot-to view.png --wait-paths 20000
-  viewer-client paths.txt                a file of paths that Mitsuba 0.6 printed, step by step
+  viewer-client paths.txt                plays light paths printed by Mitsuba 0.6
   viewer-client watch 127.0.0.1:50061 --count 10
   viewer-client watch 127.0.0.1:50061 --focus --order 'explorer seed newest' \
       --order 'explorer step 20' --order 'explorer fan 2 8'
   viewer-client bench --paths 10000,100000";
 
-/// Shows the scene, its light paths, and the picture they make.
+/// Shows a scene, its light paths, and the image they form.
 #[derive(Debug, Parser)]
 #[command(
     name = "viewer-client",
@@ -36,7 +36,7 @@ Examples:
     after_long_help = long_help()
 )]
 pub struct Cli {
-    /// What else to do than to open a window.
+    /// What to do instead of opening a window.
     #[command(subcommand)]
     pub action: Option<Action>,
     /// The window.
@@ -47,7 +47,7 @@ pub struct Cli {
 /// What else there is.
 #[derive(Debug, Subcommand)]
 pub enum Action {
-    /// Prints what a daemon sends, one line a batch of paths.
+    /// Prints what a daemon sends, one line per batch of paths.
     Watch(Box<WatchArgs>),
     /// Measures how fast random paths are drawn, without a window or a daemon.
     Bench(BenchArgs),
@@ -60,7 +60,7 @@ pub struct ViewArgs {
     /// Mitsuba 0.6 prints them; without any, a daemon is started inside this program.
     #[arg(value_name = "ADDR|FILE", value_parser = source)]
     pub source: Option<Target>,
-    /// How a daemon elsewhere is trusted.
+    /// How a remote daemon is trusted.
     #[command(flatten)]
     pub trust: TrustArgs,
     /// Built-in scene or scene file for the daemon inside this program.
@@ -84,7 +84,7 @@ pub struct ViewArgs {
     /// Waits this many seconds before the picture is taken.
     #[arg(long, value_name = "S", value_parser = seconds, requires = "headless")]
     pub wait: Option<Duration>,
-    /// A file of commands to begin with, one a line; `--help` lists them.
+    /// A file of commands to run at the start, one per line; `--help` lists them.
     #[arg(long, value_name = "SCRIPT")]
     pub run: Option<PathBuf>,
 }
@@ -111,19 +111,20 @@ pub struct WatchArgs {
     /// docs/FILTERS.md.
     #[arg(long, value_name = "TEXT", value_parser = filter)]
     pub filter: Option<FilterText>,
-    /// One JSON object a line.
+    /// Prints one JSON object per line.
     #[arg(long)]
     pub json: bool,
     /// Prints the steps of the explorer, and who steers, instead of batches.
     #[arg(long)]
     pub focus: bool,
-    /// Gives an order, such as `explorer step 20`, as the driver; may be repeated. Each is given when
-    /// the one before is done, and the program ends after the last one unless the explorer plays.
+    /// Gives an order as the driver, such as `explorer step 20`; may be repeated. Each order is
+    /// sent when the previous one is done, and the program ends after the last one unless the
+    /// explorer is playing.
     #[arg(long, value_name = "ORDER", value_parser = order, requires = "focus")]
     pub order: Vec<Order>,
-    /// Prints the numbers behind a path that was shown lately, such as `3.0.1520`: densities,
+    /// Prints the numbers behind a recently shown path, such as `3.0.1520`, and ends: densities,
     /// throughputs, geometry terms and the weight of every split, in the daemon's units (see
-    /// docs/NOTATION.md); then ends.
+    /// docs/NOTATION.md).
     #[arg(long, value_name = "CHAIN.EPOCH.STEP", conflicts_with_all = ["filter", "focus", "count"])]
     pub inspect: Option<PathId>,
     /// Ends after this many batches, or steps of the explorer.
@@ -134,7 +135,7 @@ pub struct WatchArgs {
 /// What to measure.
 #[derive(Clone, Debug, Args)]
 pub struct BenchArgs {
-    /// How many paths, one measurement each.
+    /// Numbers of paths, one measurement each.
     #[arg(
         long,
         value_name = "N,...",
@@ -143,18 +144,18 @@ pub struct BenchArgs {
         value_parser = clap::value_parser!(u32).range(1..=10_000_000)
     )]
     pub paths: Vec<u32>,
-    /// Vertices a path.
+    /// Vertices per path.
     #[arg(long, value_name = "K", default_value = "6", value_parser = clap::value_parser!(u8).range(2..=64))]
     pub vertices: u8,
     /// Size of the picture in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
     pub size: [u32; 2],
-    /// One JSON object a line.
+    /// Prints one JSON object per line.
     #[arg(long)]
     pub json: bool,
 }
 
-/// How a daemon is trusted, and what it is shown.
+/// How a daemon is trusted, and which token it is shown.
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Connection")]
 pub struct TrustArgs {
@@ -192,12 +193,13 @@ impl TrustArgs {
 }
 
 fn long_help() -> String {
-    let comment = ("# ...".to_owned(), "A comment, to the end of the line".to_owned());
+    let comment = ("# ...".to_owned(), "A comment, up to the end of the line".to_owned());
     let lines = command::forms().map(|form| (form.text(), form.help())).chain([comment]);
     let lines: Vec<String> = lines.map(|(form, help)| format!("  {form:<50} {help}")).collect();
     let commands = lines.join("\n");
     format!(
-        "{EXAMPLES}\n\nCommands of --run (keys and menus use the same; the orders among them of --order too):\n{commands}"
+        "{EXAMPLES}\n\nCommands for --run (keys and menus use the same ones; --order takes those \
+        that give orders):\n{commands}"
     )
 }
 
@@ -211,13 +213,14 @@ fn source(text: &str) -> Result<Target, String> {
     let path = Path::new(text);
     if path.is_dir() {
         return Err(format!(
-            "this is a folder; name a file of paths in it, or open a scene in it with `--scene {text}`"
+            "this is a folder; give a file of paths in it, or open the scene in it with `--scene \
+            {text}`"
         ));
     }
     if path.is_file() {
         let ending = path.extension().unwrap_or_default();
         return if SCENES.iter().any(|scene| ending.eq_ignore_ascii_case(scene)) {
-            Err(format!("this is a scene, and no file of paths; open it with `--scene {text}`"))
+            Err(format!("this is a scene, not a file of paths; open it with `--scene {text}`"))
         } else {
             Ok(Target::File(path.to_owned()))
         };
@@ -226,7 +229,7 @@ fn source(text: &str) -> Result<Target, String> {
     let scene = if text.contains(':') {
         String::new()
     } else {
-        format!("; a scene, built in or a file, is opened with `--scene {text}`")
+        format!("; to open a scene, built in or a file, use `--scene {text}`")
     };
     let no_file = |complaint| format!("there is no such file; for a daemon, {complaint}{scene}");
     address(text).map(Target::Daemon).map_err(no_file)
@@ -247,7 +250,7 @@ fn address_or_link(text: &str) -> Result<String, String> {
     }
     let shared = share::read(text).map_err(|error| error.to_string())?;
     let no_link =
-        |complaint| format!("the link names no daemon: behind {}, {complaint}", share::SCHEME);
+        |complaint| format!("the link has no daemon: after {}, {complaint}", share::SCHEME);
     address(&shared.address).map(|_| text.to_owned()).map_err(no_link)
 }
 
@@ -325,7 +328,7 @@ mod tests {
             ("nowhere.toml", "`--scene nowhere.toml`", "folder"),
             (scene.as_str(), "this is a scene", "no such file"),
             (folder.as_str(), "this is a folder", "no such file"),
-            ("lvis://abc", "the link names no daemon", "no such file"),
+            ("lvis://abc", "the link has no daemon", "no such file"),
             ("render-box:99999", "no such file; for a daemon, write HOST:PORT", "--scene"),
         ] {
             let said = source(text).expect_err(text);

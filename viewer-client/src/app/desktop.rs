@@ -87,11 +87,11 @@ fn write(image: &ColorImage, file: &std::path::Path) -> Outcome {
     let [width, height] = image.size.map(|side| side as u32);
     let bytes: Vec<u8> = image.pixels.iter().flat_map(Color32::to_array).collect();
     let png = image::RgbaImage::from_raw(width, height, bytes)
-        .ok_or_else(|| "The window has an odd size.".to_owned())?;
+        .ok_or_else(|| "The window is too large or too small to be saved.".to_owned())?;
     let write = || -> anyhow::Result<()> {
         Place::find(file)?.write(|output| Ok(png.write_to(output, image::ImageFormat::Png)?))
     };
     write()
         .map(|()| TaskResult::Done(saved_text(file)))
-        .map_err(|error| format!("The picture of the window cannot be saved: {error:#}"))
+        .map_err(|error| format!("The screenshot cannot be saved: {error:#}"))
 }

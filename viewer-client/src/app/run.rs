@@ -62,7 +62,7 @@ fn view(args: &ViewArgs) -> anyhow::Result<()> {
         };
         headless::run(viewer, peer, Job { size: args.size, wait, file, commands })
     } else {
-        window::run(viewer, peer, commands).context("the viewer ended")
+        window::run(viewer, peer, commands).context("the viewer has ended")
     }
 }
 
@@ -70,10 +70,10 @@ fn view(args: &ViewArgs) -> anyhow::Result<()> {
 fn open(path: &Path, surfaces: Option<&str>) -> anyhow::Result<Viewer> {
     let read = dump::read(path)?;
     let scene = surfaces.map(embedded::surfaces).transpose()?;
-    let stage = dump::Stage::new(read, scene);
+    let playable = dump::PlayableDump::new(read, scene);
     // The window shows them, too, but nobody may look at it.
-    for warning in &stage.warnings {
+    for warning in &playable.warnings {
         tracing::warn!("{}: {warning}", path.display());
     }
-    Ok(Viewer::new(Source::file(&file::name_of(path), stage)))
+    Ok(Viewer::new(Source::file(&file::name_of(path), playable)))
 }

@@ -27,7 +27,7 @@ pub enum LinkError {
     #[error("a link begins with {SCHEME}HOST:PORT")]
     NoLink,
     /// Its commands are no text.
-    #[error("the link's commands are no text: {0}")]
+    #[error("the commands in the link cannot be decoded: {0}")]
     NoText(#[from] std::str::Utf8Error),
     /// It is too long.
     #[error("the link is longer than 16 KiB")]
@@ -36,7 +36,7 @@ pub enum LinkError {
     #[error("`{0}` in the link: {1}")]
     BadCommand(String, CommandError),
     /// A part of it does more than to look.
-    #[error("`{0}` does more than a link may")]
+    #[error("a link may not contain `{0}`")]
     Forbidden(String),
 }
 

@@ -1,12 +1,12 @@
 //! The viewer in a window of the desktop.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use std::{process, thread};
 
 use anyhow::{Context as _, anyhow};
-use egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use host::Quiet;
 use host::signal::Endings;
 use tokio::runtime::Runtime;
@@ -17,7 +17,7 @@ use crate::app::desktop::Connect;
 use crate::app::pace::{CALM, FRAME, Pace};
 use crate::command::Command;
 use crate::draw::gpu::Quality;
-use crate::source::connection::{Haste, Link, Peer, Waker};
+use crate::source::connection::{Link, Peer, Urgency, Waker};
 
 /// The window's first size in points.
 const SIZE: [f32; 2] = [1440.0, 860.0];
@@ -57,7 +57,7 @@ pub fn run(viewer: Viewer, peer: Option<Peer>, commands: Vec<Command>) -> anyhow
     let quiet = Quiet::begin();
     let create = move |cc: &eframe::CreationContext<'_>| {
         told_by_drivers(&quiet.end());
-        let gpu = cc.wgpu_render_state.as_ref().context("no graphics card was found")?;
+        let gpu = cc.wgpu_render_state.as_ref().context("no graphics adapter was found")?;
         Viewer::install(&cc.egui_ctx, gpu, quality(gpu));
         keep_within(&cc.egui_ctx, gpu);
         let mut viewer = viewer;
@@ -69,7 +69,7 @@ pub fn run(viewer: Viewer, peer: Option<Peer>, commands: Vec<Command>) -> anyhow
         let connect: Connect = Box::new(move |peer| {
             let (ctx, calm) = (ctx.clone(), Arc::clone(&calm));
             let waker: Waker = Box::new(move |haste| {
-                let patient = haste == Haste::Whenever && calm.load(Ordering::Relaxed);
+                let patient = haste == Urgency::Whenever && calm.load(Ordering::Relaxed);
                 ctx.request_repaint_after(if patient { CALM } else { FRAME });
             });
             Link::start(peer, waker)
@@ -102,14 +102,36 @@ pub fn run(viewer: Viewer, peer: Option<Peer>, commands: Vec<Command>) -> anyhow
 /// What graphics drivers had to say of displays that they passed over.
 pub(crate) fn told_by_drivers(text: &str) {
     if !text.is_empty() {
-        tracing::debug!("said while the graphics card was looked for:\n{text}");
+        tracing::debug!("printed while the graphics adapter was opened:\n{text}");
     }
 }
 
+/// Sides of the largest window that the graphics card can draw, in points.
+fn most(ctx: &egui::Context, gpu: &RenderState) -> f32 {
+    gpu.device.limits().max_texture_dimension_2d as f32 / ctx.pixels_per_point()
+}
+
 /// No window is larger than what the graphics card can draw.
-fn keep_within(ctx: &egui::Context, gpu: &egui_wgpu::RenderState) {
-    let most = gpu.device.limits().max_texture_dimension_2d as f32 / ctx.pixels_per_point();
-    ctx.send_viewport_cmd(egui::ViewportCommand::MaxInnerSize(egui::Vec2::splat(most)));
+fn keep_within(ctx: &egui::Context, gpu: &RenderState) {
+    let most = egui::Vec2::splat(most(ctx, gpu));
+    ctx.send_viewport_cmd(egui::ViewportCommand::MaxInnerSize(most));
+    // Where nobody heeds that, the window is too large until it is made smaller again, and nothing can be
+    // drawn meanwhile; which is no reason to end.
+    let told = Mutex::new(String::new());
+    gpu.device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+        let error = error.to_string();
+        let mut told = told.lock().unwrap_or_else(PoisonError::into_inner);
+        // The same goes wrong in every frame.
+        if *told != error {
+            tracing::error!("the graphics card cannot do this: {error}");
+            *told = error;
+        }
+    }));
+}
+
+/// What a window of `size` must shrink to, if it is too large.
+fn shrunk(size: egui::Vec2, most: f32) -> Option<egui::Vec2> {
+    (size.max_elem() > most).then(|| size.min(egui::Vec2::splat(most)))
 }
 
 /// Has signals close the window, so that what is remembered is saved. The second one ends the program
@@ -145,7 +167,7 @@ fn patiently(runtime: &Runtime, endings: &mut Endings) {
 }
 
 /// Programs that stand in for a graphics card spend most of their time on samples.
-pub(crate) fn quality(gpu: &egui_wgpu::RenderState) -> Quality {
+pub(crate) fn quality(gpu: &RenderState) -> Quality {
     let tells_depth = wgpu::DownlevelFlags::DEPTH_TEXTURE_AND_BUFFER_COPIES;
     match gpu.adapter.get_info().device_type {
         wgpu::DeviceType::Cpu
@@ -169,6 +191,23 @@ struct Window {
     keeper: Option<Keeper>,
 }
 
+impl Window {
+    /// Saves what is to be remembered when it is time to, and closes the window where that was asked for.
+    fn settle(&mut self, ctx: &egui::Context) {
+        if let Some(keeper) = &mut self.keeper {
+            if let Some(wait) = keeper.update(self.viewer.preferences(), Instant::now()) {
+                ctx.request_repaint_after(wait);
+            }
+            if let Some(problem) = keeper.problem() {
+                self.viewer.complain(problem);
+            }
+        }
+        if self.viewer.is_closing() || self.is_ending.load(Ordering::Relaxed) {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+}
+
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         self.is_calm.store(self.viewer.is_frozen(), Ordering::Relaxed);
@@ -181,22 +220,24 @@ impl eframe::App for Window {
             }
             Some(_) | None => {}
         }
-        if let Some(gpu) = frame.wgpu_render_state()
-            && self.viewer.upload(gpu)
-        {
-            ui.ctx().request_repaint();
+        if let Some(gpu) = frame.wgpu_render_state() {
+            let size = ui.ctx().content_rect().size();
+            if let Some(size) = shrunk(size, most(ui.ctx(), gpu)) {
+                ui.ctx().send_viewport_cmd(egui::ViewportCommand::InnerSize(size));
+            }
+            if self.viewer.upload(gpu) {
+                ui.ctx().request_repaint();
+            }
         }
         self.viewer.ui(ui);
-        if let Some(keeper) = &mut self.keeper {
-            if let Some(wait) = keeper.update(self.viewer.preferences(), Instant::now()) {
-                ui.ctx().request_repaint_after(wait);
-            }
-            if let Some(problem) = keeper.problem() {
-                self.viewer.complain(problem);
-            }
-        }
-        if self.viewer.is_closing() || self.is_ending.load(Ordering::Relaxed) {
-            ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+        self.settle(ui.ctx());
+    }
+
+    /// A window that nobody sees is not drawn, but must still be closed, and what was changed just before
+    /// it was hidden be saved.
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        if ctx.input(|input| input.viewport().visible() == Some(false)) {
+            self.settle(ctx);
         }
     }
 
@@ -204,5 +245,20 @@ impl eframe::App for Window {
         if let Some(keeper) = &mut self.keeper {
             keeper.finish(self.viewer.preferences());
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::vec2;
+
+    use super::*;
+
+    #[test]
+    fn a_window_that_is_too_large_shrinks() {
+        assert_eq!(shrunk(vec2(1440.0, 860.0), 8192.0), None);
+        assert_eq!(shrunk(vec2(8192.0, 8192.0), 8192.0), None);
+        assert_eq!(shrunk(vec2(17_000.0, 600.0), 8192.0), Some(vec2(8192.0, 600.0)));
+        assert_eq!(shrunk(vec2(600.0, 9000.0), 8192.0), Some(vec2(600.0, 8192.0)));
     }
 }

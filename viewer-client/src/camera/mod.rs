@@ -90,7 +90,7 @@ impl ViewCamera {
             CameraCommand::Orbit(right, up) => self.orbit(right, up),
             CameraCommand::Pan(right, up) => self.pan(right, up),
             CameraCommand::Zoom(factor, at) => self.zoom(factor, at),
-            CameraCommand::Look(right, up) => self.look(right, up),
+            CameraCommand::Look(right, up) => self.look_around(right, up),
             CameraCommand::Move(step) => self.step(step),
             CameraCommand::Fly(switch) => switch.apply(&mut self.flying),
             CameraCommand::Through(switch) => {
@@ -217,7 +217,7 @@ impl ViewCamera {
         self.turn(right, up);
     }
 
-    fn look(&mut self, right: f32, up: f32) {
+    fn look_around(&mut self, right: f32, up: f32) {
         self.leave_render_camera();
         let eye = self.eye();
         self.turn(right, up);

@@ -16,25 +16,25 @@ table! {
     pub enum CameraCommand in Camera;
 
     commands {
-        /// Turns around the pivot, in degrees.
+        /// Orbits around the pivot, in degrees.
         Orbit "camera orbit" (right: f32 [DEGREES], up: f32 [DEGREES]), Linked;
-        /// Shifts the picture, in heights of the viewport.
+        /// Pans the view, in heights of the viewport.
         Pan "camera pan" (right: f32 [STEP], up: f32 [STEP]), Linked;
-        /// Comes closer to a point of the viewport, in half heights of it from its centre.
+        /// Zooms towards a point of the viewport, given in half heights from its centre.
         Zoom "camera zoom" (factor: f32 [range(0.001, 1000.0)], at: [f32; 2] [AT]), Linked;
-        /// Turns the head, in degrees.
+        /// Looks around from where the camera stands, in degrees.
         Look "camera look" (right: f32 [DEGREES], up: f32 [DEGREES]), Linked;
-        /// Steps, in sizes of the scene.
+        /// Moves the camera, in sizes of the scene.
         Move "camera move" (step: [f32; 3] [STEPS]), Linked;
         /// Flies instead of orbiting.
         Fly "camera fly" (switch: Switch), Linked;
         /// Looks through the render camera.
         Through "camera through" (switch: Switch), Linked;
-        /// Turns around a point from now on, in scene units, from no farther away.
+        /// Makes a point the pivot, in scene units, without moving farther away from it.
         Focus "camera focus" (point: [f32; 3] [POINT], distance: f32 [range(0.01, 1e6)]), Linked;
         /// Shows the whole scene.
         Frame "camera frame", Linked;
-        /// Stands where a link says, in scene units and degrees.
+        /// Places the camera, in scene units and degrees.
         Place "camera place" (viewpoint: Viewpoint), Linked;
         /// Shows the whole scene from one side.
         View "camera view" (side: Side), Linked;

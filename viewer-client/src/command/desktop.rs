@@ -12,17 +12,18 @@ table! {
     pub enum DesktopCommand in Desktop;
 
     commands {
-        /// Watches another daemon, follows a link, or goes back to the own daemon.
+        /// Connects to another daemon, opens a link, or returns to the built-in daemon.
         Connect "connect" (address: String [Line::Any("HOST:PORT|LINK|home")]);
-        /// Looks at a file of paths.
+        /// Opens a file of paths.
         Open "open" (file: String [Line::Any("FILE")]);
-        /// Leaves what is looked at, and looks at nothing.
+        /// Disconnects from the daemon, or closes the file of paths.
         Leave "leave";
-        /// Copies a link that restores camera, filter, selection and looks.
+        /// Copies a link that restores camera, filter, selection and display settings.
         Share "share", Gives;
-        /// Writes the whole window as an image.
+        /// Saves the whole window as an image.
         Screenshot "screenshot" (file: String [Line::Any("FILE.png")]), Gives;
-        /// Copies as text what a panel says, the state of the session, or all settings as commands.
+        /// Copies as text the contents of a panel, the state of the session, or all settings as
+        /// commands.
         Copy "copy" (source: Part), Gives;
     }
 }

@@ -16,33 +16,33 @@ table! {
     pub enum FilterCommand in Filter;
 
     commands {
-        /// Shows the paths that a filter wants, beside the selectors.
+        /// Shows the paths that match a filter, in addition to the selectors.
         Set "filter set" (text: FilterText), Linked;
-        /// Shows all paths: neither a text nor a selector is left.
+        /// Shows all paths: removes the text and every selector.
         Clear "filter clear", Linked;
-        /// Whether the filter holds at all.
+        /// Switches the filter on or off.
         Enable "filter enable" (switch: Switch), Linked;
         /// Shows the paths that the filter would leave out instead.
         Invert "filter invert" (switch: Switch), Linked;
-        /// Selects paths by a sphere, in the file's units.
+        /// Adds a sphere that selects paths, in the units of the scene file.
         Add "filter add" (sphere: Sphere), Linked;
-        /// Moves a selector, counted from 0.
+        /// Moves and resizes the selector of this number, counted from 0.
         Move "filter move" (number: u32 [NUMBER], place: [f64; 4] [Sphere::PLACE]);
-        /// Shows the handles of a selector.
+        /// Shows the handles of the selector of this number.
         Choose "filter choose" (number: u32 [NUMBER]);
-        /// Removes a selector.
+        /// Removes the selector of this number.
         Delete "filter delete" (number: u32 [NUMBER]);
         /// Removes every selector.
         DeleteAll "filter delete-all" | "filter bare";
         /// Keeps text and selectors under a name.
         Keep "filter keep" (name: String [Line::Name]);
-        /// Whether a kept filter holds, beside the others.
+        /// Switches a kept filter on or off, in addition to the others.
         Use "filter use" (switch: Switch, name: String [Line::Name]);
-        /// Whether the opposite of a kept filter holds.
+        /// Inverts a kept filter, or undoes that.
         Reverse "filter reverse" (switch: Switch, name: String [Line::Name]);
-        /// Writes a kept filter into the text, in the place of text and selectors.
+        /// Loads a kept filter into the text, replacing text and selectors.
         Load "filter load" (name: String [Line::Name]);
-        /// Keeps a filter no longer.
+        /// Deletes a kept filter.
         Forget "filter forget" (name: String [Line::Name]);
     }
 }

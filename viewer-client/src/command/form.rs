@@ -44,7 +44,7 @@ impl Parameter {
 pub enum Trait {
     /// A link to a view may hold it: it looks, and does nothing else.
     Linked,
-    /// It opens or closes what is before the eyes for a moment, so that there is nothing to undo.
+    /// It opens or closes something transient, so that there is nothing to undo.
     Passing,
     /// Its result leaves the viewer.
     Gives,

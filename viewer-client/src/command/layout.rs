@@ -11,13 +11,13 @@ table! {
     commands {
         /// Opens or closes a panel.
         Panel "panel" (name: PanelName, switch: Switch);
-        /// Leaves nothing but the heading of a panel, or shows it again.
+        /// Folds a panel to its heading, or unfolds it.
         Fold "fold" (name: PanelName, switch: Switch);
-        /// Puts a panel elsewhere.
+        /// Moves a panel.
         Arrange "arrange" (name: PanelName, place: Move);
         /// Sets the width of a side of the window.
         Width "width" (side: WindowSide, points: u16 [WIDTHS]);
-        /// Puts all panels back where they usually are.
+        /// Restores the default layout of the panels.
         Usual "reset-panels" | "usual";
     }
 }

@@ -9,17 +9,19 @@ table! {
     pub enum PathCommand in Path;
 
     commands {
-        /// Selects the path at tangents from the view direction; again, the next one there.
+        /// Selects the path in a direction, given as tangents from the view direction; again, the
+        /// next one there.
         Pick "path pick" (aim: Pointer);
         /// Selects a path at which a chain stayed long; the longest stay is 0.
         Stay "path stay" (rank: u8 [range(0, u8::MAX)]);
-        /// Selects a path that is written out, as in a link to a view, held or not.
+        /// Selects a path that is written out, as in a link to a view, whether or not the viewer
+        /// holds it.
         Show "path show" (path: ShownPath), Linked;
         /// Selects the explorer's path, before the step that is shown.
         Explored "path explored";
         /// Selects no path.
         Deselect "path none";
-        /// Brings a vertex of the selected path into the middle of the view.
+        /// Centres the view on a vertex of the selected path.
         Vertex "path vertex" (step: VertexStep);
     }
 }

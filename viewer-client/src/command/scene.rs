@@ -16,19 +16,19 @@ table! {
         /// How surfaces are drawn.
         Shading "scene shading" (shading: Shading)
             sets shading = Shading::Shaded, "Surfaces", Linked;
-        /// How surfaces answer the light of the preview.
+        /// How surfaces are lit in the preview.
         Lighting "scene lighting" (lighting: Lighting)
             sets lighting = Lighting::Soft, "Lighting", Linked;
-        /// Where the preview is lit from, in the file's units; the lamps of the scene stay as they
-        /// are.
+        /// Where the light of the preview is, in the units of the scene file; the scene's own
+        /// lights are unaffected.
         Light "scene light" (light: Light) sets light = Light::Camera, "Light", Linked;
-        /// Opacity of all surfaces; below 1, paths inside and behind are seen through them.
+        /// Opacity of all surfaces; below 1, paths inside and behind them show through.
         Opacity "scene opacity" (x: f32 [SHARE]) sets opacity = 1.0, "Opacity", Linked;
-        /// Makes surfaces that are seen from behind glass, so that one looks into rooms.
+        /// Makes surfaces seen from behind transparent, so that you can look into rooms.
         Cutaway "scene cutaway" (switch: bool) sets cutaway = true, "Cut away backs", Linked;
-        /// What a plane along an axis cuts away.
+        /// What a plane across an axis cuts away.
         Clip "scene clip" (side: ClipSide) sets clip = ClipSide::Off, "Clip", Linked;
-        /// Where the plane that cuts lies across the scene.
+        /// Where the cutting plane lies across the scene.
         Cut "scene cut" (x: f32 [SHARE]) sets cut = 0.5, "Cut at", Linked;
         /// Shows a wireframe model of the camera that takes the picture.
         Camera "scene camera" (switch: bool) sets camera = true, "Camera model", Linked;

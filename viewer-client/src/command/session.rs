@@ -8,9 +8,9 @@ table! {
     pub enum SessionCommand in Session;
 
     commands {
-        /// Takes back what was done last.
+        /// Undoes the last change.
         Undo "undo";
-        /// Does again what was taken back.
+        /// Redoes the last change that was undone.
         Redo "redo";
         /// Connects now instead of waiting for the next attempt.
         Reconnect "reconnect";

@@ -181,5 +181,5 @@ fn mistakes_are_explained() {
     assert!(complaint("filter set edges >").contains("cannot be read"), "says what is wrong");
     assert!(complaint("image save").contains("FILE is missing"), "names the parameter");
     assert!(complaint("scale 1000").contains("between 50 and 300"), "names the limits");
-    assert!(complaint("quit now").contains("but `now` does"), "names the rest");
+    assert!(complaint("quit now").contains("unexpected `now`"), "names the rest");
 }

@@ -13,17 +13,17 @@ table! {
     pub struct WindowSettings {
         /// Colours of the interface.
         Theme "theme" (theme: Theme) sets theme = Theme::Dark, "Colours", Kept;
-        /// Size of texts and buttons.
+        /// Size of text and buttons.
         Scale "scale" (percent: u16 [range(50, 300).unit("%")]) sets scale = 100, "Size", Kept;
-        /// Keys of today's programs, or of the Lvis of 2014.
+        /// Modern keys, or those of the Lvis of 2014.
         Keys "keys" (preset: KeyPreset) sets keys = KeyPreset::Today, "Keys", Kept;
-        /// What dragging does to the camera, as in these programs.
+        /// What dragging does to the camera, as in one of these programs.
         Mouse "mouse" (preset: MousePreset) sets mouse = MousePreset::Rerun, "Mouse", Kept;
-        /// Lets the others see where you look, and your filter.
+        /// Lets other viewers see where you look, and your filter.
         Seen "seen" (switch: bool) sets seen = false, "Show others where I look";
         /// Shows the first steps.
         Hint "hint" (switch: bool) sets hint = false, "First steps", Kept, Passing;
-        /// Shows the sheet of keys.
+        /// Shows the list of keys.
         Help "help" (switch: bool) sets help = false, "Keys and mouse", Passing;
         /// Finds a command by typing.
         Palette "palette" (switch: bool) sets palette = false, "Find a command", Passing;

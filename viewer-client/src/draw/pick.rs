@@ -45,7 +45,7 @@ pub fn paths_at(
     of: Pickable,
     surface: Option<f32>,
 ) -> Vec<Hit> {
-    let beam = Beam::new(lens, pointer, of.clip);
+    let beam = PickFrustum::new(lens, pointer, of.clip);
     let mut hits = Vec::new();
     let mut left = of.newest;
     let mut codes = Vec::new();
@@ -75,7 +75,7 @@ pub fn paths_at(
 }
 
 /// A thin pyramid round the line of sight through the cursor.
-struct Beam<'a> {
+struct PickFrustum<'a> {
     lens: &'a Lens,
     at: Vec2,
     reach: f32,
@@ -84,7 +84,7 @@ struct Beam<'a> {
     sides: [f32; 4],
 }
 
-impl<'a> Beam<'a> {
+impl<'a> PickFrustum<'a> {
     fn new(lens: &'a Lens, pointer: Pointer, clip: Vec4) -> Self {
         let [x, y] = pointer.at;
         let sides = [x - pointer.reach, x + pointer.reach, y - pointer.reach, y + pointer.reach];

@@ -62,7 +62,7 @@ pub struct Sources<'a> {
     pub reference: Option<&'a Reference>,
     /// How different it looks from that.
     pub flip: Option<&'a FlipMap>,
-    /// What the chains tell of parts of the film.
+    /// What the chains report about parts of the film.
     pub diagnostics: Option<&'a Diagnostics>,
 }
 
@@ -200,7 +200,7 @@ pub fn legend(look: &ImageSettings) -> Option<Legend> {
             ticks: decades(ERRORS),
         }),
         Layer::Flip => Some(Legend {
-            title: "FLIP: the difference that a person sees".to_owned(),
+            title: "FLIP: the difference that a person perceives".to_owned(),
             ramp: Ramp::Sequential,
             ticks: ["0", "0.25", "0.5", "0.75", "1"].map(str::to_owned).into(),
         }),

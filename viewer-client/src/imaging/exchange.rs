@@ -13,7 +13,7 @@ use crate::imaging::film::Film;
 #[derive(Debug, Error)]
 pub enum ExchangeError {
     /// The name does not tell a format.
-    #[error("`{0}` does not tell its format; end the name in .exr or .png")]
+    #[error("`{0}` has no known extension; use a name that ends in .exr or .png")]
     UnknownFormat(String),
     /// The file cannot be read.
     #[error(transparent)]

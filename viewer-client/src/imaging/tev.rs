@@ -8,7 +8,7 @@ use tev_client::{PacketCreateImage, PacketUpdateImage, TevClient};
 
 use crate::imaging::film::Film;
 
-/// Where tev listens unless it is told otherwise.
+/// Where tev listens by default.
 pub const TEV_ADDRESS: &str = "127.0.0.1:14158";
 /// A tev that takes longer to answer is not there.
 const TIMEOUT: Duration = Duration::from_secs(3);

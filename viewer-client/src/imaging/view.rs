@@ -41,12 +41,12 @@ pub enum Finding {
     Flip(Result<FlipMap, String>),
 }
 
-/// What is known of an image besides its pixels.
+/// What is known about an image in addition to its pixels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Provenance<'a> {
     /// The scene's name.
     pub scene: Option<&'a str>,
-    /// What an EXR file tells of where it came from.
+    /// What an EXR file says about its origin.
     pub metadata: Vec<(&'static str, String)>,
     /// How well its chains explore.
     pub diagnostics: Option<&'a Diagnostics>,
@@ -248,7 +248,7 @@ mod tests {
         let (mut view, mut look) = (view(), ImageSettings::default());
         let wrong = [
             (ImageCommand::Reference("no such file.exr".to_owned()), "no such file.exr"),
-            (ImageCommand::Save("image.bmp".to_owned()), "end the name in .exr or .png"),
+            (ImageCommand::Save("image.bmp".to_owned()), "use a name that ends in .exr or .png"),
             (ImageCommand::Tev("127.0.0.1:1".to_owned()), "start it"),
             (ImageCommand::Show(Layer::Flip), "Load a reference"),
         ];

@@ -14,7 +14,7 @@ const TEN: f64 = 10.0;
 
 /// The bindings that differ from today's. The camera moves by a fiftieth of the scene.
 pub(super) const BINDINGS: &[Binding] = &[
-    say(plain(Key::F), Camera, "camera fly toggle", "free camera, or around the scene again"),
+    say(plain(Key::F), Camera, "camera fly toggle", "fly freely, or orbit again"),
     say(plain(Key::ArrowUp), Camera, "camera move 0.02 0 0", "forward"),
     say(plain(Key::ArrowDown), Camera, "camera move -0.02 0 0", "back"),
     say(plain(Key::ArrowLeft), Camera, "camera move 0 -0.02 0", "to the left"),
@@ -24,18 +24,18 @@ pub(super) const BINDINGS: &[Binding] = &[
     find(plain(Key::Enter), Explorer, seed, "make the selected path the active path"),
     say(plain(Key::Backspace), Paths, "cloud clear", "clear all paths"),
     say(plain(Key::Home), Paths, "filter delete-all", "delete all selectors"),
-    find(plain(Key::A), Paths, handles, "handles of selectors move, or scale"),
+    find(plain(Key::A), Paths, handles, "handles of selectors move or scale"),
     find(
         plain(Key::F1),
         Paths,
         |w| less(w, &CloudSettings::limit()),
-        "let 10 fewer paths wait (limit)",
+        "10 fewer paths may wait (limit)",
     ),
     find(
         plain(Key::F2),
         Paths,
         |w| more(w, &CloudSettings::limit()),
-        "let 10 more paths wait (limit)",
+        "10 more paths may wait (limit)",
     ),
     find(
         plain(Key::F3),
@@ -53,18 +53,18 @@ pub(super) const BINDINGS: &[Binding] = &[
         plain(Key::F5),
         Paths,
         |w| less(w, &CloudSettings::threshold()),
-        "filter when 10 fewer paths wait (threshold)",
+        "take paths in when 10 fewer wait (threshold)",
     ),
     find(
         plain(Key::F6),
         Paths,
         |w| more(w, &CloudSettings::threshold()),
-        "filter when 10 more paths wait (threshold)",
+        "take paths in when 10 more wait (threshold)",
     ),
     say(plain(Key::F8), Explorer, "explorer step 1", "a single step"),
-    find(plain(Key::F9), Explorer, play_or_pause, "pause, or go on"),
-    say(plain(Key::F10), Paths, "cloud freeze toggle", "let new paths wait, or come"),
-    say(plain(Key::F11), Paths, "filter enable toggle", "filter, or show all paths"),
+    find(plain(Key::F9), Explorer, play_or_pause, "pause or resume"),
+    say(plain(Key::F10), Paths, "cloud freeze toggle", "hold new paths back, or let them in"),
+    say(plain(Key::F11), Paths, "filter enable toggle", "apply the filter, or show all paths"),
     find(plain(Key::F12), View, shading, "next shading"),
 ];
 
@@ -78,14 +78,14 @@ fn more(world: &World<'_>, setting: &Setting<CloudSettings, u32>) -> Command {
 
 /// The mouse, and the keys that need it.
 pub(super) const MOUSE: &[(&str, &str)] = &[
-    ("Click", "select a path; again, the next one there"),
+    ("Click", "select a path; again for the next one there"),
     ("Z X C V", "a sphere under the cursor: paths that start, end, pass all, pass any"),
     ("Delete", "remove the chosen selector"),
-    ("Left drag", "pull a handle of the chosen selector"),
-    ("Right drag", "turn the camera"),
-    ("Shift+drag", "shift the view"),
-    ("Wheel", "come closer to the point under the cursor"),
-    ("Ctrl+C", "copy the section, or the pixel of the image, under the cursor"),
+    ("Left drag", "drag a handle of the chosen selector"),
+    ("Right drag", "rotate the camera"),
+    ("Shift+drag", "pan the view"),
+    ("Wheel", "zoom to the point under the cursor"),
+    ("Ctrl+C", "copy the section, or the image pixel, under the cursor"),
 ];
 
 /// True for keys that are taken though no binding names them: the viewport has them.

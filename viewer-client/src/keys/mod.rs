@@ -100,18 +100,18 @@ pub fn mouse(preset: KeyPreset) -> &'static [(&'static str, &'static str)] {
 pub fn drags(preset: MousePreset) -> &'static [(&'static str, &'static str)] {
     match preset {
         MousePreset::Rerun => &[
-            ("Left, middle drag", "turn around the pivot; look about while flying"),
-            ("Right, Shift+drag", "shift the view"),
+            ("Left, middle drag", "orbit around the pivot; look around while flying"),
+            ("Right, Shift+drag", "pan the view"),
         ],
         MousePreset::Blender => &[
-            ("Middle drag", "turn around the pivot; look about while flying"),
-            ("Shift+middle drag", "shift the view"),
-            ("Ctrl+middle drag", "come closer"),
+            ("Middle drag", "orbit around the pivot; look around while flying"),
+            ("Shift+middle drag", "pan the view"),
+            ("Ctrl+middle drag", "zoom"),
         ],
         MousePreset::Maya => &[
-            ("Alt+left drag", "turn around the pivot; look about while flying"),
-            ("Alt+middle drag", "shift the view"),
-            ("Alt+right drag", "come closer"),
+            ("Alt+left drag", "orbit around the pivot; look around while flying"),
+            ("Alt+middle drag", "pan the view"),
+            ("Alt+right drag", "zoom"),
         ],
     }
 }
@@ -132,12 +132,12 @@ pub fn bindings(preset: KeyPreset) -> Vec<&'static Binding> {
 
 /// The mouse today; [`crate::panel`]'s viewport gives it this meaning.
 const MOUSE: &[(&str, &str)] = &[
-    ("Click", "select a path; again, the next one there"),
+    ("Click", "select a path; again for the next one there"),
     ("F2 F3 F4 F5", "a sphere under the cursor: paths that start, end, pass any, pass all"),
     ("Delete", "remove the chosen sphere"),
-    ("Wheel", "come closer to the point under the cursor"),
+    ("Wheel", "zoom to the point under the cursor"),
     ("W A S D, Q E", "while flying: move, down and up; Shift is faster"),
-    ("Ctrl+C", "copy the section, or the pixel of the image, under the cursor"),
+    ("Ctrl+C", "copy the section, or the image pixel, under the cursor"),
 ];
 
 const fn plain(key: Key) -> KeyboardShortcut {
@@ -185,28 +185,33 @@ const BINDINGS: &[Binding] = &[
     say(ctrl(Key::Num1), Camera, "camera view back", "from the back"),
     say(ctrl(Key::Num3), Camera, "camera view left", "from the left"),
     say(ctrl(Key::Num7), Camera, "camera view bottom", "from below"),
-    say(plain(Key::Space), Paths, "cloud freeze toggle", "freeze the cloud, or let it go on"),
-    say(plain(Key::Backspace), Paths, "cloud clear", "forget every path"),
-    find(plain(Key::C), Paths, |w| next(w, &CloudSettings::color()), "colour by the next property"),
+    say(plain(Key::Space), Paths, "cloud freeze toggle", "freeze the paths on screen, or go on"),
+    say(plain(Key::Backspace), Paths, "cloud clear", "remove every path from the view"),
+    find(
+        plain(Key::C),
+        Paths,
+        |w| next(w, &CloudSettings::color()),
+        "colour paths by the next property",
+    ),
     find(
         plain(Key::M),
         Paths,
         |w| next(w, &CloudSettings::blend()),
-        "paths cover, weigh, or add up",
+        "next blending of crossing paths: newest, weighted, add",
     ),
     find(plain(Key::Minus), Paths, |w| drawn(w, 0.5), "draw half as many paths"),
     find(plain(Key::Equals), Paths, |w| drawn(w, 2.0), "draw twice as many paths"),
-    find(plain(Key::H), Paths, handles, "handles of selectors move, or scale"),
+    find(plain(Key::H), Paths, handles, "handles of selectors move or scale"),
     find(plain(Key::OpenBracket), Paths, |w| width(w, 1.0 / 1.25), "thinner lines"),
     find(plain(Key::CloseBracket), Paths, |w| width(w, 1.25), "thicker lines"),
     say(plain(Key::L), Paths, "cloud ends toggle", "tint the light end and the camera end"),
     say(plain(Key::V), Paths, "path vertex next", "next vertex of the selected path"),
     say(shift(Key::V), Paths, "path vertex previous", "previous vertex of the selected path"),
-    say(plain(Key::Escape), Paths, "path none", "select no path"),
+    say(plain(Key::Escape), Paths, "path none", "clear the selection"),
     find(plain(Key::Enter), Explorer, seed, "explore the selected path, or the newest"),
     find(plain(Key::K), Explorer, play_or_pause, "play or pause"),
     find(plain(Key::N), Explorer, step, "one step"),
-    find(shift(Key::N), Explorer, skip, "on to the next acceptance"),
+    find(shift(Key::N), Explorer, skip, "step to the next acceptance"),
     say(ctrl(Key::Z), View, "undo", "undo"),
     say(ctrl(Key::Y), View, "redo", "redo"),
     find(
@@ -224,11 +229,11 @@ const BINDINGS: &[Binding] = &[
     say(plain(Key::P), View, "panel statistics toggle", "statistics panel"),
     say(plain(Key::T), View, "theme toggle", "dark or light"),
     say(ctrl(Key::P), View, "palette toggle", "find a command by typing"),
-    find(ctrl(Key::Plus), View, |w| larger(w, 10.0), "larger texts and buttons"),
-    find(ctrl(Key::Minus), View, |w| larger(w, -10.0), "smaller texts and buttons"),
+    find(ctrl(Key::Plus), View, |w| larger(w, 10.0), "larger text and buttons"),
+    find(ctrl(Key::Minus), View, |w| larger(w, -10.0), "smaller text and buttons"),
     say(ctrl(Key::L), View, "share", "copy a link to this view"),
     say(plain(Key::R), View, "reconnect", "connect now"),
-    say(plain(Key::F1), View, "help toggle", "keys and mouse; also ?"),
+    say(plain(Key::F1), View, "help toggle", "list of keys; also ?"),
     say(ctrl(Key::Q), View, "quit", "quit"),
 ];
 

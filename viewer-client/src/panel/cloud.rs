@@ -29,10 +29,9 @@ impl Section for Cloud {
     const NAME: PanelName = PanelName::Cloud;
     const TITLE: &'static str = "Paths";
     const HELP: &'static [&'static str] = &[
-        "The lines are paths of light, each from the light to the camera, as the chains found \
-         them.",
-        "Colour says one thing at a time; the legend in the corner tells which. The budget bounds \
-         the memory for paths; older ones go first.",
+        "Each line is a light path that the chains have found, from the light to the camera.",
+        "The legend in the corner explains the colours. The budget limits the memory for paths; \
+        the oldest are dropped first.",
     ];
     const KEYS: &'static [Group] = &[Group::Paths];
 
@@ -46,11 +45,11 @@ fn buttons(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     let label = if frozen { "Go on" } else { "Freeze" };
     let freeze = ui
         .add(Button::new(label).selected(frozen))
-        .on_hover_text("Hold the cloud still; the chains go on (Space)");
+        .on_hover_text("Freeze the paths on screen; the chains go on (Space)");
     if freeze.clicked() {
         commands.push(Command::Cloud(CloudCommand::Freeze(Switch::to(!frozen))));
     }
-    let clear = ui.button("Clear").on_hover_text("Forget every path (Backspace)");
+    let clear = ui.button("Clear").on_hover_text("Remove every path from the view (Backspace)");
     if clear.clicked() {
         commands.push(Command::Cloud(CloudCommand::Clear));
     }
@@ -84,7 +83,7 @@ fn budget(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     row(ui, "", "", |ui| {
         let share = store.byte_len() as f32 / store.budget().max(1) as f32;
         ui.add(ProgressBar::new(share).desired_height(5.0).desired_width(ui.available_width()))
-            .on_hover_text("How full the memory for paths is");
+            .on_hover_text("How much of the memory for paths is in use");
     });
     setting(ui, world, &Cloud::threshold(), commands);
     setting(ui, world, &Cloud::limit(), commands);
@@ -104,17 +103,17 @@ fn budget(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
 mod tests {
     use egui_kittest::kittest::Queryable as _;
 
-    use super::super::tests::{Stage, shows};
+    use super::super::tests::{Fixture, shows};
     use super::*;
     use crate::value::ColorMode;
 
     #[test]
     fn the_budget_stands_below_the_look() {
-        let mut stage = Stage::new(Cloud);
+        let mut fixture = Fixture::new(Cloud);
         let path: &[[f32; 3]] = &[[0.0; 3], [1.0; 3]];
-        stage.store.append(&crate::synthetic::batch(&[path; 3]));
-        stage.settings.cloud.shown = 2;
-        let mut harness = stage.harness();
+        fixture.store.append(&crate::synthetic::batch(&[path; 3]));
+        fixture.settings.cloud.shown = 2;
+        let mut harness = fixture.harness();
         harness.run();
         for text in ["Budget", "Draw", "Keep", "Take in at", "Wait", "2 drawn, 3 kept", "0 waiting"]
         {
@@ -128,9 +127,9 @@ mod tests {
     #[test]
     fn only_ramps_with_two_scales_offer_them() {
         for mode in ColorMode::ALL {
-            let mut stage = Stage::new(Cloud);
-            stage.settings.cloud.color = mode;
-            let mut harness = stage.harness();
+            let mut fixture = Fixture::new(Cloud);
+            fixture.settings.cloud.color = mode;
+            let mut harness = fixture.harness();
             harness.run();
             let offered = harness.query_by_label("Scale").is_some();
             assert_eq!(offered, mode.has_scale(), "{mode}");

@@ -27,7 +27,7 @@ impl ConnectMenu {
             ui.close();
         }
         if world.has_home && !world.status.embedded {
-            let tip = "Back to the daemon inside this program";
+            let tip = "Return to the daemon inside this program";
             if ui.button("The built-in daemon").on_hover_text(tip).clicked() {
                 commands.push(Command::Desktop(DesktopCommand::Connect(HOME.to_owned())));
                 ui.close();
@@ -44,9 +44,10 @@ impl ConnectMenu {
             }
         }
         ui.separator();
-        let link = ui
-            .button("Copy link to this view")
-            .on_hover_text("Restores camera, filter, selection and colours: viewer-client LINK");
+        let link = ui.button("Copy link to this view").on_hover_text(
+            "Restores camera, filter, selection and display settings when opened \
+                by viewer-client LINK",
+        );
         if link.clicked() {
             commands.push(Command::Desktop(DesktopCommand::Share));
             ui.close();

@@ -27,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, name: PanelName, world: &World<'_>, commands: &m
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let close = Button::new(RichText::new("×").weak().size(15.0)).frame(false);
-            let tip = format!("Close; the View menu opens {} again", about(name).title);
+            let tip = format!("Close; the View menu reopens {}", about(name).title);
             if ui.add(close).on_hover_text(tip).clicked() {
                 push(LayoutCommand::Panel(name, Switch::Off));
             }
@@ -35,7 +35,7 @@ pub(super) fn show(ui: &mut Ui, name: PanelName, world: &World<'_>, commands: &m
             let mark = Button::new(RichText::new("?").weak()).frame(false);
             let menu = MenuButton::from_button(mark);
             let (response, _) = menu.ui(ui, |ui| scrolling(ui, |ui| sheet(ui, name, world)));
-            response.on_hover_text(format!("What {} is for", about(name).title));
+            response.on_hover_text(format!("About {}", about(name).title));
         });
     });
     if copy {
@@ -60,14 +60,15 @@ fn menu(
     };
     let dots = Button::new(RichText::new("…").weak()).frame(false);
     let (response, shown) = MenuButton::from_button(dots).ui(ui, |ui| {
-        let copy = ui.button("Copy as text").on_hover_text("Ctrl+C over it does so, too").clicked();
+        let copy =
+            ui.button("Copy as text").on_hover_text("Or press Ctrl+C over the section").clicked();
         ui.separator();
         for (label, step) in [("Move up", Move::Up), ("Move down", Move::Down), other] {
             if ui.button(label).clicked() {
                 push(LayoutCommand::Arrange(name, step));
             }
         }
-        if ui.button("Usual places and widths").clicked() {
+        if ui.button("Restore default layout").clicked() {
             push(LayoutCommand::Usual);
         }
         copy
@@ -84,7 +85,7 @@ fn title(ui: &mut Ui, name: PanelName, folded: bool) -> Response {
     let title = ui.add(Label::new(text).selectable(false).sense(Sense::click_and_drag()));
     title.dnd_set_drag_payload(name);
     let fold = if folded { "unfolds" } else { "folds" };
-    title.on_hover_text(format!("A click {fold} it; drag it to another place"))
+    title.on_hover_text(format!("Click {fold} it; drag to move it"))
 }
 
 /// Takes a section that was dragged here, and puts it before `name`.

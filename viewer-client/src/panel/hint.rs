@@ -10,11 +10,11 @@ use crate::world::World;
 
 /// What to try first, and what it does.
 const STEPS: [(&str, &str); 5] = [
-    ("Drag, wheel", "turn the scene, come closer"),
+    ("Drag, wheel", "orbit the scene, zoom"),
     ("0", "look through the render camera"),
-    ("C", "colour the paths by something else"),
-    ("Click the image", "show only the paths to that pixel"),
-    ("F1", "every key and mouse button"),
+    ("C", "change what the colour of paths means"),
+    ("Click the image", "show only the paths through that pixel"),
+    ("F1", "list all keys and mouse buttons"),
 ];
 
 /// Distance from the lower edge of the view, in points.
@@ -51,7 +51,7 @@ fn card(ui: &mut Ui, commands: &mut Vec<Command>) {
     Frame::popup(ui.style()).inner_margin(9).show(ui, |ui| {
         ui.spacing_mut().interact_size.y = 0.0;
         ui.horizontal(|ui| {
-            let text = "The lines are paths of light, as the chains find them.";
+            let text = "The lines are light paths, drawn as the chains find them.";
             ui.label(RichText::new(text).small().strong());
             if ui.small_button("Got it").clicked() {
                 commands.push(Command::Window(WindowCommand::Hint(Switch::Off)));

@@ -78,9 +78,9 @@ fn windows(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
 
 fn right(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     let (symbol, tip) = if world.settings.window.is_dark() {
-        ("Light", "Light colours (T)")
+        ("Light", "Switch to the light theme (T)")
     } else {
-        ("Dark", "Dark colours (T)")
+        ("Dark", "Switch to the dark theme (T)")
     };
     if ui.button(symbol).on_hover_text(tip).clicked() {
         commands.push(Command::Window(WindowCommand::Theme(ThemeChange::Toggle)));

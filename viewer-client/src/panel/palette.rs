@@ -79,7 +79,7 @@ impl Palette {
         let edit = TextEdit::singleline(&mut self.text)
             .hint_text("Type what you want to do, or a command such as `cloud width 3`")
             .desired_width(f32::INFINITY);
-        let response = ui.add(edit).on_hover_text("Arrows choose a line, Enter does it");
+        let response = ui.add(edit).on_hover_text("Arrow keys choose a line, Enter runs it");
         response.request_focus();
         if response.changed() {
             self.line = 0;
@@ -146,13 +146,13 @@ mod tests {
 
     use super::*;
     use crate::command::CloudCommand;
-    use crate::panel::tests::{Stage, shows};
+    use crate::panel::tests::{Fixture, shows};
 
     /// What is asked for after this was typed and Enter was pressed.
     fn typed(text: &str) -> Vec<Command> {
-        let mut stage = Stage::new(Palette::default());
-        stage.settings.window.palette = true;
-        let mut harness = stage.harness();
+        let mut fixture = Fixture::new(Palette::default());
+        fixture.settings.window.palette = true;
+        let mut harness = fixture.harness();
         harness.run_steps(3);
         harness.get_by_role(egui::accesskit::Role::TextInput).type_text(text);
         harness.run_steps(3);
@@ -165,7 +165,7 @@ mod tests {
     fn keys_and_whole_commands_are_found_by_typing() {
         let closed = || Command::Window(WindowCommand::Palette(Switch::Off));
         let clear = Command::Cloud(CloudCommand::Clear);
-        assert_eq!(typed("FORGET path"), [closed(), clear], "a key by words of its meaning");
+        assert_eq!(typed("REMOVE path"), [closed(), clear], "a key by words of its meaning");
         let width = Command::Cloud(CloudCommand::Width(3.0));
         assert_eq!(typed("cloud width 3"), [closed(), width], "a command as it is");
         assert_eq!(typed("width of the lines"), [], "a form waits for its parameters");
@@ -174,9 +174,9 @@ mod tests {
 
     #[test]
     fn an_empty_line_shows_what_there_is() {
-        let mut stage = Stage::new(Palette::default());
-        stage.settings.window.palette = true;
-        let mut harness = stage.harness();
+        let mut fixture = Fixture::new(Palette::default());
+        fixture.settings.window.palette = true;
+        let mut harness = fixture.harness();
         harness.run_steps(3);
         assert!(shows(&harness, "Look through the render camera"), "a key");
     }

@@ -6,7 +6,7 @@ use super::widgets::{dot, number, row};
 use super::{Panel, Section};
 use crate::command::{Command, PlayCommand, form};
 use crate::keys::Group;
-use crate::source::dump::{Outcome, Stage, Step};
+use crate::source::dump::{Outcome, PlayableDump, Step};
 use crate::source::playback::Playback;
 use crate::value::PanelName;
 use crate::value::Switch;
@@ -27,14 +27,14 @@ impl Panel for PlaybackPanel {
         transport(ui, playback, commands);
         scrubber(ui, world, playback, commands);
         if let Some(step) = playback.step() {
-            describe(ui, playback.stage(), step);
+            describe(ui, playback.dump(), step);
         }
-        for warning in playback.stage().warnings.iter().take(MOST_WARNINGS) {
+        for warning in playback.dump().warnings.iter().take(MOST_WARNINGS) {
             let text = RichText::new(format::sentence(warning)).color(theme::BUSY).small();
             ui.add(Label::new(text).wrap());
         }
         ui.add_space(6.0);
-        tally(ui, playback.stage());
+        tally(ui, playback.dump());
     }
 }
 
@@ -42,7 +42,7 @@ impl Section for PlaybackPanel {
     const NAME: PanelName = PanelName::Playback;
     const TITLE: &'static str = "Playback";
     const HELP: &'static [&'static str] =
-        &["Plays the file of paths; drag the line to go to any step."];
+        &["Plays the file of paths; drag the slider to go to any step."];
     const KEYS: &'static [Group] = &[Group::Explorer];
 
     fn applies(world: &World<'_>) -> bool {
@@ -67,14 +67,11 @@ fn transport(ui: &mut Ui, playback: &Playback, commands: &mut Vec<Command>) {
         };
         button(ui, "First", "To the first step", PlayCommand::To(0));
         button(ui, "Back", "One step back", PlayCommand::By(-1));
-        let (label, tip) = if playback.is_playing() {
-            ("Pause", "Stand still (K)")
-        } else {
-            ("Play", "Go on (K)")
-        };
+        let (label, tip) =
+            if playback.is_playing() { ("Pause", "Pause (K)") } else { ("Play", "Play (K)") };
         button(ui, label, tip, PlayCommand::Run(Switch::Toggle));
         button(ui, "Step", "One step (N)", PlayCommand::By(1));
-        button(ui, "Accepted", "On to the next accepted step (Shift+N)", PlayCommand::Accepted);
+        button(ui, "Accepted", "Go to the next accepted step (Shift+N)", PlayCommand::Accepted);
     });
     let word = playback.word();
     let text = format!("{word}, step {} of {count}", position + 1);
@@ -96,9 +93,9 @@ fn scrubber(ui: &mut Ui, world: &World<'_>, playback: &Playback, commands: &mut 
     }
 }
 
-fn describe(ui: &mut Ui, stage: &Stage, step: &Step) {
+fn describe(ui: &mut Ui, playable: &PlayableDump, step: &Step) {
     ui.horizontal(|ui| {
-        let strategy = stage.strategies.iter().position(|name| *name == step.mutation);
+        let strategy = playable.strategies.iter().position(|name| *name == step.mutation);
         if let Some(strategy) = strategy {
             dot(ui, theme::strategy_color(strategy));
             ui.label(&step.mutation);
@@ -108,7 +105,9 @@ fn describe(ui: &mut Ui, stage: &Stage, step: &Step) {
             Outcome::Accepted(a) => (format!("accepted, a = {a:.4}"), theme::GOOD),
             Outcome::Rejected(a) => (format!("rejected, a = {a:.4}"), theme::BUSY),
             Outcome::Failed => ("failed: no proposal".to_owned(), theme::BAD),
-            Outcome::Recorded => ("how it came about is not told".to_owned(), theme::ACCENT),
+            Outcome::Recorded => {
+                ("the file does not say how it was made".to_owned(), theme::ACCENT)
+            }
         };
         ui.label(RichText::new(text).color(color).strong());
     });
@@ -119,13 +118,13 @@ fn describe(ui: &mut Ui, stage: &Stage, step: &Step) {
     };
     ui.label(RichText::new(text).weak());
     if let Some([x, y]) = step.pixel {
-        row(ui, "Pixel", "Where the proposal meets the film", |ui| {
+        row(ui, "Pixel", "Where the proposal lands on the film", |ui| {
             ui.label(RichText::new(format!("{x:.2}  {y:.2}")).monospace())
         });
     }
     if !step.configuration.is_empty() {
-        let tip = "E, C the ends; e on the light, S on a surface, c on the lens; d: cannot be \
-                   connected";
+        let tip = "E and C: the ends; e: on the light, S: on a surface, c: on the lens; d: cannot \
+            be connected";
         row(ui, "Vertices", tip, |ui| {
             let text = RichText::new(&step.configuration).small().family(FontFamily::Monospace);
             ui.add(Label::new(text).wrap().sense(Sense::hover()))
@@ -134,15 +133,15 @@ fn describe(ui: &mut Ui, stage: &Stage, step: &Step) {
 }
 
 /// What became of all steps, mutation by mutation.
-fn tally(ui: &mut Ui, stage: &Stage) {
-    if !stage.annotated {
-        let text = "The file has paths alone, and not which chain, step or mutation made them; one \
-                    with `#` lines tells that, and rejected steps, too.";
+fn tally(ui: &mut Ui, playable: &PlayableDump) {
+    if !playable.annotated {
+        let text = "The file holds only paths, not the chain, step and mutation that made each; \
+            one with `#` lines has these, and rejected steps, too.";
         ui.add(Label::new(RichText::new(text).weak().small()).wrap());
         return;
     }
-    for (index, name) in stage.strategies.iter().enumerate() {
-        let of_name = || stage.steps.iter().filter(|step| step.mutation == *name);
+    for (index, name) in playable.strategies.iter().enumerate() {
+        let of_name = || playable.steps.iter().filter(|step| step.mutation == *name);
         let count = |is: fn(Outcome) -> bool| of_name().filter(|step| is(step.outcome)).count();
         let accepted = count(|o| matches!(o, Outcome::Accepted(_)));
         let failed = count(|o| o == Outcome::Failed);

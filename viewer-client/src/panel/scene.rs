@@ -46,8 +46,8 @@ impl Section for Scene {
     const NAME: PanelName = PanelName::Scene;
     const TITLE: &'static str = "Scene";
     const HELP: &'static [&'static str] = &[
-        "How surfaces are drawn. Make them transparent, cut the scene open, or leave edges alone \
-         to see the paths behind them.",
+        "How surfaces are drawn. Make them transparent, cut the scene open, or show only edges to \
+        see the paths behind them.",
     ];
     const KEYS: &'static [Group] = &[Group::Camera];
 
@@ -69,7 +69,7 @@ fn light(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
         let mut push = |light| commands.push(Command::Scene(SceneCommand::Light(light)));
         let camera = ui
             .add(Button::new("At the eye").selected(at_eye))
-            .on_hover_text("It goes wherever you look from");
+            .on_hover_text("It moves with the camera");
         if camera.clicked() {
             push(Light::Camera);
         }
@@ -93,13 +93,13 @@ fn views(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
         }
         let through = ui
             .add(Button::new("Camera view").selected(world.camera.is_through()))
-            .on_hover_text("Look through the camera that takes the picture (0)");
+            .on_hover_text("Look through the render camera (0)");
         if through.clicked() {
             commands.push(Command::Camera(CameraCommand::Through(Switch::Toggle)));
         }
         let fly = ui
             .add(Button::new("Fly").selected(world.camera.is_flying()))
-            .on_hover_text("Move with W A S D, Q and E; look about with the mouse (F)");
+            .on_hover_text("Move with W A S D, Q and E; look around with the mouse (F)");
         if fly.clicked() {
             commands.push(Command::Camera(CameraCommand::Fly(Switch::Toggle)));
         }
@@ -110,12 +110,12 @@ fn views(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
 mod tests {
     use egui_kittest::kittest::Queryable as _;
 
-    use super::super::tests::Stage;
+    use super::super::tests::Fixture;
     use super::*;
 
     #[test]
     fn the_light_leaves_the_eye_and_returns() {
-        let mut harness = Stage::new(Scene).harness();
+        let mut harness = Fixture::new(Scene).harness();
         harness.run();
         harness.get_by_label("In the scene").click();
         harness.run();
@@ -134,9 +134,9 @@ mod tests {
     #[test]
     fn surfaces_without_shade_need_no_light() {
         for shading in Shading::ALL {
-            let mut stage = Stage::new(Scene);
-            stage.settings.scene.shading = shading;
-            let mut harness = stage.harness();
+            let mut fixture = Fixture::new(Scene);
+            fixture.settings.scene.shading = shading;
+            let mut harness = fixture.harness();
             harness.run();
             let lit = matches!(shading, Shading::Shaded | Shading::Plain | Shading::Edges);
             assert_eq!(harness.query_by_label("At the eye").is_some(), lit, "{shading}");

@@ -74,7 +74,7 @@ impl Sides {
         Self { names, widths, room }
     }
 
-    /// Widest that a side may be made by hand.
+    /// Widest that the user can make a side.
     fn most(&self, side: WindowSide, layout: &Settled) -> f32 {
         let other = opposite(side);
         let taken = match self.widths[other as usize] {

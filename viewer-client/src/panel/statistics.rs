@@ -23,14 +23,14 @@ impl Panel for StatisticsPanel {
             empty_state(
                 ui,
                 "No statistics yet",
-                "Rates and acceptances appear within a second of connecting to a daemon.",
+                "Rates and acceptance appear within a second of connecting to a daemon.",
             );
             return;
         };
         let rate = RichText::new(format::count(world.status.mutation_rate())).size(19.0).strong();
         ui.columns(2, |columns| {
             if let [left, right] = columns {
-                reading(left, rate, "mutations a second");
+                reading(left, rate, "mutations per second");
                 brightness(right, statistics);
             }
         });
@@ -45,10 +45,9 @@ impl Panel for StatisticsPanel {
 impl Section for StatisticsPanel {
     const NAME: PanelName = PanelName::Statistics;
     const TITLE: &'static str = "Statistics";
-    const HELP: &'static [&'static str] = &[
-        "Counts of all chains since the epoch began. For each strategy: how often it was chosen, \
-         how often it made a whole path, and how often the chain moved there.",
-    ];
+    const HELP: &'static [&'static str] =
+        &["Counts over all chains since the epoch began. For each strategy: how often it was \
+        chosen, how often it produced a complete path, and how often the chain moved there."];
 
     fn applies(world: &World<'_>) -> bool {
         world.has_chains()
@@ -57,7 +56,7 @@ impl Section for StatisticsPanel {
     fn text(world: &World<'_>) -> String {
         let mut lines = Lines::default();
         let Some(statistics) = &world.status.statistics else { return lines.text() };
-        lines.put(format_args!("mutations a second\t{:.0}", world.status.mutation_rate()));
+        lines.put(format_args!("mutations per second\t{:.0}", world.status.mutation_rate()));
         let (b, error) = (statistics.normalization, statistics.normalization_error);
         lines.put(format_args!("b\t{b:.8}\t±\t{error:.2e}"));
         lines.put(format_args!("strategy\tproposed\tgenerated\taccepted\tmean acceptance"));
@@ -106,8 +105,8 @@ fn strategies(ui: &mut Ui, world: &World<'_>, statistics: &Statistics) {
     let header = |text: &str| Label::new(RichText::new(text).small().weak()).selectable(false);
     let tips = [
         "Steps that chose the strategy",
-        "Proposals that were complete paths with light on them, of all proposals",
-        "Proposals that the chain moved to, of all proposals; of those generated, on hover",
+        "Share of proposals that were complete paths and carry light",
+        "Share of proposals that the chain moved to; hover for the share of those generated",
     ];
     ui.horizontal(|ui| {
         ui.add(header("strategy"));

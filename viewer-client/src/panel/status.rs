@@ -29,7 +29,7 @@ impl Panel for StatusBar {
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let keys =
-                    ui.button("F1  Keys").on_hover_text("Every key and mouse button (F1, ?)");
+                    ui.button("F1  Keys").on_hover_text("List all keys and mouse buttons (F1, ?)");
                 if keys.clicked() {
                     commands.push(Command::Window(WindowCommand::Help(Switch::Toggle)));
                 }
@@ -52,7 +52,7 @@ fn connection(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     match &status.link {
         LinkState::Idle => {
             dot(ui, ui.visuals().weak_text_color());
-            ui.add(Label::new("Nothing to look at").selectable(false));
+            ui.add(Label::new("Nothing is open").selectable(false));
         }
         LinkState::Connected => {
             let playing = world.playback.is_some();
@@ -71,7 +71,7 @@ fn connection(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
             };
             let tip = status.welcome.as_ref().map_or_else(String::new, |w| {
                 format!(
-                    "Session {}, daemon {}, connection made anew {} times",
+                    "Session {}, daemon {}, reconnected {} times",
                     w.session, w.server_version, status.reconnects
                 )
             });
@@ -100,7 +100,7 @@ fn session(ui: &mut Ui, world: &World<'_>) {
     if let Some(chains) = &steering.chains {
         ui.add_space(6.0);
         let (text, color) = if chains.running {
-            ("Chains run", ui.visuals().weak_text_color())
+            ("Chains running", ui.visuals().weak_text_color())
         } else {
             ("Chains paused", theme::busy(dark))
         };
@@ -111,12 +111,12 @@ fn session(ui: &mut Ui, world: &World<'_>) {
     let own = world.status.welcome.as_ref().map(|welcome| welcome.session);
     let (text, tip) = match driver {
         Some(driver) if Some(driver.author.session) == own => {
-            ("You drive".to_owned(), "You may pause and steer; others watch")
+            ("You drive".to_owned(), "You can pause and steer; the others watch")
         }
         Some(driver) => {
-            (format!("{} drives", driver.author.name), "Ask to drive in the Explorer panel")
+            (format!("{} drives", driver.author.name), "Use Ask to drive in the Explorer panel")
         }
-        None => ("Nobody drives".to_owned(), "Ask to drive in the Explorer panel"),
+        None => ("Nobody drives".to_owned(), "Use Ask to drive in the Explorer panel"),
     };
     ui.add_space(6.0);
     ui.add(Label::new(RichText::new(text).weak()).selectable(false)).on_hover_text(tip);
@@ -133,9 +133,9 @@ fn figures(ui: &mut Ui, world: &World<'_>) {
     let statistics = world.status.statistics.as_ref();
     if let Some(statistics) = statistics.filter(|s| s.memory_bytes > 0) {
         let (name, tip) = if world.status.embedded {
-            ("program", "Memory of this program, which viewer and daemon share")
+            ("program", "Memory used by this program, which is both viewer and daemon")
         } else {
-            ("daemon", "Memory of the daemon")
+            ("daemon", "Memory used by the daemon")
         };
         figure(ui, name, &format::bytes(statistics.memory_bytes), tip);
     }
@@ -143,8 +143,8 @@ fn figures(ui: &mut Ui, world: &World<'_>) {
     figure(ui, "viewer", &held, "Memory for paths in this viewer, graphics memory included");
     let lost = statistics.map_or(0, |s| s.paths_dropped).max(counts.dropped);
     let tip = format!(
-        "Paths that the daemon made and this viewer never saw, in {} gaps; {} more were passed over \
-         while the cloud was frozen",
+        "Paths that this viewer never received, in {} gaps; {} more were skipped while the view \
+        was frozen",
         counts.gaps, counts.skipped
     );
     figure(ui, "dropped", &format::count(lost as f64), &tip);
@@ -154,14 +154,14 @@ fn figures(ui: &mut Ui, world: &World<'_>) {
     }
     let bytes = format::bytes(world.store.byte_rate() as u64);
     let paths = format::count(world.store.path_rate());
-    figure(ui, "paths/s", &paths, &format!("Paths received a second, {bytes}/s"));
+    figure(ui, "paths/s", &paths, &format!("Paths received per second, {bytes}/s"));
     if let Some(latency) = world.status.latency.filter(|_| world.status.is_connected()) {
         let milliseconds = 1e3 * latency.as_secs_f32();
         let value = format!("{} ms", format::value(milliseconds));
-        figure(ui, "latency", &value, "How long the daemon took to answer, way and back");
+        figure(ui, "latency", &value, "Round-trip time to the daemon");
     }
     let mutations = format::count(world.status.mutation_rate());
-    figure(ui, "mutations/s", &mutations, "Steps of all chains a second");
+    figure(ui, "mutations/s", &mutations, "Steps per second of all chains");
 }
 
 /// Every queue of the daemon, with its bound.
@@ -172,7 +172,7 @@ fn waiting_where(statistics: &Statistics) -> String {
         format!("\n{}: {bytes} of at most {limit}{whose}", queue.name)
     };
     let lines: String = statistics.queues.iter().map(line).collect();
-    format!("What waits at the daemon for this viewer{lines}")
+    format!("Data waiting at the daemon for this viewer{lines}")
 }
 
 /// A figure, where there is room for it.
@@ -210,7 +210,7 @@ pub(super) fn text(world: &World<'_>) -> String {
         lines.put(format_args!("latency\t{:.2} ms", 1e3 * latency.as_secs_f64()));
     }
     if let Some(statistics) = &status.statistics {
-        lines.put(format_args!("mutations a second\t{:.0}", status.mutation_rate()));
+        lines.put(format_args!("mutations per second\t{:.0}", status.mutation_rate()));
         lines.put(format_args!("paths dropped\t{}", statistics.paths_dropped));
         lines.put(format_args!("daemon's memory\t{}", format::bytes(statistics.memory_bytes)));
     }

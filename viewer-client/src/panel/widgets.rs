@@ -166,9 +166,10 @@ fn slider(
         )
         .labelled_by(label)
     });
-    // A slider also rounds and clamps by itself; only the user's hand counts. No setting has more digits
-    // than these.
-    let by_hand = response.changed() && moved as f32 != value as f32;
+    // A slider also rounds and clamps by itself, and what it makes of a value is no wish of the user's.
+    let shown = format!("{:.*}", range.decimals, value.clamp(range.low, range.high));
+    let is_rounded = shown.parse::<f64>().is_ok_and(|shown| shown as f32 == moved as f32);
+    let by_hand = response.changed() && moved as f32 != value as f32 && !is_rounded;
     response.on_hover_ui(explain);
     by_hand.then_some(moved)
 }

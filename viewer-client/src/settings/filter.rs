@@ -261,7 +261,7 @@ impl FilterSettings {
         }
     }
 
-    /// Writes a kept filter into the text, in the place of text and selectors.
+    /// Loads a kept filter into the text, replacing text and selectors.
     fn load(&mut self, name: &str) {
         let Some(kept) = self.named(name) else { return };
         // It would hold twice.
@@ -278,7 +278,7 @@ impl FilterSettings {
         Some(Filter::all_of(vec![Filter::from_selectors(&selectors), text]))
     }
 
-    /// Puts the whole together anew.
+    /// Reassembles the whole filter.
     fn put_together(&mut self) {
         self.whole = if self.off {
             FilterText::default()

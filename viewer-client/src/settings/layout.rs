@@ -153,7 +153,7 @@ impl Layout {
         }
     }
 
-    /// Puts a panel elsewhere.
+    /// Moves a panel.
     fn arrange(&mut self, name: PanelName, place: Move) {
         let side = if self.is_left(name) { WindowSide::Left } else { WindowSide::Right };
         let near: Vec<PanelName> = self.side(side).filter(|near| self.is_open(*near)).collect();

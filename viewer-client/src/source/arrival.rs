@@ -84,12 +84,12 @@ impl Source {
             TracerEvent::FocusGap(steps) => steering.focus.miss(steps),
             TracerEvent::Film(tile) => {
                 if !self.shown.image.film.accept(&tile) {
-                    tracing::warn!("a tile of the image contradicts itself and was left out");
+                    tracing::warn!("an inconsistent tile of the image was dropped");
                 }
             }
             TracerEvent::ExplorerFilm(tile) => {
                 if !steering.film.accept(&tile) {
-                    tracing::warn!("a tile of the explorer's film contradicts itself");
+                    tracing::warn!("an inconsistent tile of the explorer's film was dropped");
                 }
             }
             TracerEvent::Gap(gap) => self.shown.store.count_gap(gap.paths),
@@ -143,7 +143,7 @@ impl Source {
             daemon.accept_filter(&reply);
         }
         if let Some(error) = &reply.error {
-            self.status.say(Err(format!("The filter is refused: {error}")));
+            self.status.say(Err(format!("The filter was rejected: {error}")));
         } else {
             // What came before was chosen by another filter, and comes again unless it is held.
             if !settings.cloud.frozen {

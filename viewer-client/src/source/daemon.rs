@@ -7,7 +7,7 @@ use common::{Appearance, FilterReply, FilterText, Order, PathBatch, PathId};
 
 use super::connection::{Inbox, Link};
 
-/// The others are told of a new point of view this often at most.
+/// The other viewers are told about a new viewpoint at most this often.
 const APPEARANCE: Duration = Duration::from_millis(500);
 
 /// A daemon, with or without a connection to it.

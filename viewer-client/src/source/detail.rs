@@ -22,7 +22,7 @@ impl Source {
         self.shown.selection = Some(Selection { place, ..selection });
     }
 
-    /// The paths at which chains stayed longest, once the daemon has told of some.
+    /// The paths at which chains stayed longest, once the daemon has reported some.
     pub fn longest_stays(&self) -> Option<&PathBatch> {
         let statistics = self.status.statistics.as_ref()?;
         statistics.diagnostics.as_deref()?.longest.as_ref()
@@ -45,7 +45,7 @@ impl Source {
         }
         let missing = |why: &str| Detail::Missing(why.to_owned());
         selection.detail = match &self.origin {
-            Origin::File(_) => missing("A file of paths does not tell them."),
+            Origin::File(_) => missing("A file of paths does not give them."),
             Origin::Daemon(daemon) if daemon.inspect(selection.header.id) => {
                 Detail::Asked(Instant::now())
             }
@@ -65,7 +65,7 @@ impl Source {
             Ok(detail) if detail.vertices.len() == selection.vertices.len() => {
                 Detail::Known(Arc::new(detail))
             }
-            Ok(_) => Detail::Missing("The daemon told those of another path.".to_owned()),
+            Ok(_) => Detail::Missing("The daemon answered for another path.".to_owned()),
             Err(why) => Detail::Missing(why),
         };
     }
@@ -74,7 +74,7 @@ impl Source {
         let light = self.shown.selection.as_ref().and_then(|selection| selection.vertices.first());
         match light {
             Some(_) if self.shown.model.is_none() => {
-                Err("The scene has not come yet; select the path again once it has.".to_owned())
+                Err("The scene has not arrived yet; select the path again once it has.".to_owned())
             }
             Some(light) => Ok(units::in_file_units(detail, light, &self.names())),
             None => Ok(detail),

@@ -15,7 +15,7 @@ use tracer_server::scene::load::load;
 /// The scene that is shown when none is named.
 pub const DEFAULT_SCENE: &str = "cornell";
 
-/// Worker threads: a core is left to whoever draws, or every step of the mouse would wait for chains.
+/// Worker threads: one core is left for drawing, or the mouse would lag behind the chains.
 fn threads() -> usize {
     thread::available_parallelism().map_or(1, |cores| (cores.get() - 1).max(1))
 }

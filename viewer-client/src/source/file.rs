@@ -4,7 +4,7 @@ use std::path::Path;
 
 use common::{Role, Welcome};
 
-use super::dump::Stage;
+use super::dump::PlayableDump;
 use super::model::Model;
 use super::playback::Playback;
 use super::status::{LinkState, Status};
@@ -13,20 +13,20 @@ use crate::command::PlayCommand;
 
 impl Source {
     /// The file of this name, all of whose paths are shown.
-    pub fn file(name: &str, stage: Stage) -> Self {
+    pub fn file(name: &str, playable: PlayableDump) -> Self {
         let mut status = Status::new(name.to_owned(), false);
         status.link = LinkState::Connected;
-        status.welcome(welcome(name, &stage));
-        if let Some(warning) = stage.warnings.first() {
-            let more = match stage.warnings.len() - 1 {
+        status.welcome(welcome(name, &playable));
+        if let Some(warning) = playable.warnings.first() {
+            let more = match playable.warnings.len() - 1 {
                 0 => String::new(),
                 more => format!(" ({more} more in the Playback panel)"),
             };
-            status.say(Err(format!("in {name}, {warning}{more}")));
+            status.warn(&format!("in {name}, {warning}{more}"));
         }
-        let model = Model::new(stage.mesh.clone());
-        let bounds = stage.bounds();
-        let mut source = Self::of(Origin::File(Box::new(Playback::new(stage))), status);
+        let model = Model::new(playable.mesh.clone());
+        let bounds = playable.bounds();
+        let mut source = Self::of(Origin::File(Box::new(Playback::new(playable))), status);
         name.clone_into(&mut source.shown.scene_hash);
         let model = model.map(|model| Model { bounds: bounds.unwrap_or(model.bounds), ..model });
         source.shown.set_model(model, source.status.welcome.as_ref());
@@ -73,17 +73,17 @@ pub fn name_of(file: &Path) -> String {
 }
 
 /// What a daemon would say that showed such a file.
-fn welcome(name: &str, stage: &Stage) -> Welcome {
-    let chains = stage.steps.iter().map(|step| step.chain).max().map_or(0, |last| last + 1);
-    let longest = stage.acts.iter().map(|act| act.vertices.len()).max().unwrap_or(2);
+fn welcome(name: &str, playable: &PlayableDump) -> Welcome {
+    let chains = playable.steps.iter().map(|step| step.chain).max().map_or(0, |last| last + 1);
+    let longest = playable.paths.iter().map(|path| path.vertices.len()).max().unwrap_or(2);
     Welcome {
         session: 0,
         server_version: String::new(),
         scene_name: name.to_owned(),
         scene_hash: name.to_owned(),
-        frame: stage.frame,
-        camera: stage.camera,
-        strategies: stage.strategies.clone(),
+        frame: playable.frame,
+        camera: playable.camera,
+        strategies: playable.strategies.clone(),
         failure_reasons: Vec::new(),
         chains,
         max_edges: longest.saturating_sub(1) as u32,

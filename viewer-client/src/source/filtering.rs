@@ -25,7 +25,7 @@ impl Source {
         if let Origin::Daemon(daemon) = &mut self.origin
             && !daemon.ask_for_paths(settings.filter.whole())
         {
-            let problem = "The filter was not sent: the daemon is busy; set it again.";
+            let problem = "The filter was not sent, because the daemon is busy; apply it again.";
             self.status.say(Err(problem.to_owned()));
         }
     }

@@ -7,7 +7,7 @@ use common::{
 };
 
 use crate::command::PlayCommand;
-use crate::source::dump::{Act, Outcome, Stage, Step};
+use crate::source::dump::{DumpPath, Outcome, PlayableDump, Step};
 use crate::source::steering::Moment;
 
 /// Steps a second to begin with.
@@ -16,7 +16,7 @@ const USUAL_RATE: f32 = 10.0;
 /// A dump and the place in it.
 #[derive(Debug)]
 pub struct Playback {
-    stage: Stage,
+    playable: PlayableDump,
     /// Index of the step that is shown.
     position: usize,
     playing: bool,
@@ -41,25 +41,25 @@ pub struct Scene {
 
 impl Playback {
     /// A dump that stands at its end, so that all of its paths are shown.
-    pub fn new(stage: Stage) -> Self {
-        let position = stage.steps.len().saturating_sub(1);
+    pub fn new(playable: PlayableDump) -> Self {
+        let position = playable.steps.len().saturating_sub(1);
         let (rate, part) = (USUAL_RATE, 0.0);
-        Self { stage, position, playing: false, rate, part, shown: 0, moment: None }
+        Self { playable, position, playing: false, rate, part, shown: 0, moment: None }
     }
 
     /// What is played.
-    pub fn stage(&self) -> &Stage {
-        &self.stage
+    pub fn dump(&self) -> &PlayableDump {
+        &self.playable
     }
 
     /// Index of the step that is shown, and how many there are.
     pub fn place(&self) -> (usize, usize) {
-        (self.position, self.stage.steps.len())
+        (self.position, self.playable.steps.len())
     }
 
     /// The step that is shown.
     pub fn step(&self) -> Option<&Step> {
-        self.stage.steps.get(self.position)
+        self.playable.steps.get(self.position)
     }
 
     /// True while it goes on by itself.
@@ -77,14 +77,14 @@ impl Playback {
         self.rate
     }
 
-    /// What the step changed; `None` for a seed, and for a proposal of which no path is told.
+    /// What the step changed; `None` for a seed, and for a proposal without a known path.
     pub fn moment(&self) -> Option<&Moment> {
         self.moment.as_ref()
     }
 
     /// Follows a command.
     pub fn apply(&mut self, command: PlayCommand) {
-        let last = self.stage.steps.len().saturating_sub(1);
+        let last = self.playable.steps.len().saturating_sub(1);
         match command {
             PlayCommand::Run(switch) => {
                 switch.apply(&mut self.playing);
@@ -105,7 +105,7 @@ impl Playback {
                 self.playing = false;
             }
             PlayCommand::Accepted => {
-                let later = self.stage.steps.iter().enumerate().skip(self.position + 1);
+                let later = self.playable.steps.iter().enumerate().skip(self.position + 1);
                 let next = later.into_iter().find(|(_, step)| step.outcome.has_path());
                 self.position = next.map_or(last, |(index, _)| index);
                 self.playing = false;
@@ -122,7 +122,7 @@ impl Playback {
         self.part += seconds * self.rate;
         let steps = self.part.floor();
         self.part -= steps;
-        let last = self.stage.steps.len().saturating_sub(1);
+        let last = self.playable.steps.len().saturating_sub(1);
         self.position = (self.position + steps as usize).min(last);
         self.playing = self.position < last;
         steps > 0.0
@@ -131,19 +131,23 @@ impl Playback {
     /// What is to be shown at this place, given what was shown before.
     pub fn scene(&mut self) -> Scene {
         let record = self.step().map_or(0, |step| step.record);
-        let wanted = (record + 1).min(self.stage.acts.len());
+        let wanted = (record + 1).min(self.playable.paths.len());
         let anew = wanted < self.shown;
         let from = if anew { 0 } else { self.shown };
         self.shown = wanted;
         self.moment = self.find_moment();
-        let acts = self.stage.acts.get(from..wanted).unwrap_or_default();
-        Scene { anew, paths: batch(acts), current: self.stage.acts.get(record).map(focus_path) }
+        let paths = self.playable.paths.get(from..wanted).unwrap_or_default();
+        Scene {
+            anew,
+            paths: batch(paths),
+            current: self.playable.paths.get(record).map(focus_path),
+        }
     }
 
     fn find_moment(&self) -> Option<Moment> {
         let step = self.step()?;
-        let after = self.stage.acts.get(step.record)?;
-        let before = self.stage.acts.get(step.record.checked_sub(1)?)?;
+        let after = self.playable.paths.get(step.record)?;
+        let before = self.playable.paths.get(step.record.checked_sub(1)?)?;
         let (kept_light, kept_eye) = kept(&before.vertices, &after.vertices);
         match step.outcome {
             Outcome::Accepted(_) => {}
@@ -171,8 +175,8 @@ impl Playback {
     }
 }
 
-fn focus_path(act: &Act) -> FocusPath {
-    FocusPath { header: act.header, vertices: act.vertices.clone(), next: 0 }
+fn focus_path(path: &DumpPath) -> FocusPath {
+    FocusPath { header: path.header, vertices: path.vertices.clone(), next: 0 }
 }
 
 /// How many vertices two paths share at the light end and at the lens end.
@@ -184,11 +188,11 @@ fn kept(before: &[VertexRecord], after: &[VertexRecord]) -> (usize, usize) {
     (light, eye)
 }
 
-fn batch(acts: &[Act]) -> Option<PathBatch> {
+fn batch(paths: &[DumpPath]) -> Option<PathBatch> {
     let mut builder = BatchBuilder::new(BatchLimits { bytes: usize::MAX });
-    for act in acts {
+    for path in paths {
         // Without a limit, no push completes a batch.
-        drop(builder.push(&act.header, &act.vertices, None));
+        drop(builder.push(&path.header, &path.vertices, None));
     }
     builder.finish()
 }
@@ -201,7 +205,7 @@ mod tests {
     use super::*;
     use crate::value::Switch;
 
-    fn act(step: u64, tags: &[f32]) -> Act {
+    fn path(step: u64, tags: &[f32]) -> DumpPath {
         let vertex = |x: &f32| VertexRecord {
             position: [*x, 0.0, 0.0],
             normal: [0; 2],
@@ -214,7 +218,7 @@ mod tests {
         let vertices = tags.iter().map(vertex).collect();
         let header = PathHeader { id, ..PathHeader::default() };
         let outcome = Outcome::Recorded;
-        Act { header, vertices, numbers: Vec::new(), outcome, line: 1 }
+        DumpPath { header, vertices, numbers: Vec::new(), outcome, line: 1 }
     }
 
     fn playback() -> Playback {
@@ -229,12 +233,12 @@ mod tests {
             record,
         };
         let accepted = Outcome::Accepted(0.5);
-        Playback::new(Stage {
+        Playback::new(PlayableDump {
             frame: SceneFrame { centre: DVec3::ZERO, scale: 1.0, light: 1.0 },
             camera: crate::synthetic::camera(),
             strategies: Vec::new(),
             mesh: SceneMesh::default(),
-            acts: vec![act(0, &[1.0, 2.0, 3.0, 9.0]), act(2, &[1.0, 5.0, 6.0, 3.0, 9.0])],
+            paths: vec![path(0, &[1.0, 2.0, 3.0, 9.0]), path(2, &[1.0, 5.0, 6.0, 3.0, 9.0])],
             steps: vec![
                 step(0, Outcome::Seed, 0),
                 step(1, Outcome::Rejected(0.1), 0),
@@ -260,16 +264,16 @@ mod tests {
         let tags: Vec<_> = moment.step.inserted.iter().map(|v| v.position[0]).collect();
         assert_eq!(tags, [5.0, 6.0], "what is new");
         let proposal = moment.proposal().expect("a path");
-        assert_eq!(proposal, playback.stage().acts[1].vertices, "together the path after");
+        assert_eq!(proposal, playback.dump().paths[1].vertices, "together the path after");
     }
 
     #[test]
     fn records_without_a_word_follow_each_other_where_they_share_vertices() {
         let mut playback = playback();
-        playback.stage.steps[2].outcome = Outcome::Recorded;
+        playback.playable.steps[2].outcome = Outcome::Recorded;
         playback.scene();
         assert!(playback.moment().is_some(), "three vertices are the same");
-        playback.stage.acts[1] = act(2, &[7.0, 5.0, 6.0, 9.0]);
+        playback.playable.paths[1] = path(2, &[7.0, 5.0, 6.0, 9.0]);
         playback.scene();
         assert_eq!(playback.moment(), None, "the lens alone is");
     }

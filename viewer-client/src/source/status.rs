@@ -57,11 +57,11 @@ pub struct Status {
     pub mutation_history: History,
     /// How the chains do over time.
     pub trends: Trends,
-    /// How often the connection was made anew.
+    /// How often the viewer reconnected.
     pub reconnects: u32,
     /// The answer to the filter that was set last.
     pub filter: Option<FilterReply>,
-    /// Who steers, and what the explorer does.
+    /// Who steers, and what the explorer is doing.
     pub steering: Steering,
     /// How long the daemon took to answer a question last, way and back.
     pub latency: Option<Duration>,
@@ -75,7 +75,7 @@ pub struct Status {
     failures: Vec<String>,
 }
 
-/// Failures that are kept for whoever asks.
+/// Failures that have not been collected yet.
 const MOST_FAILURES: usize = 64;
 
 /// A daemon that says nothing for so long does not answer.
@@ -138,7 +138,7 @@ impl Status {
         self.welcome.as_ref().map_or(Role::Observer, |w| self.steering.role(w.session))
     }
 
-    /// What is known of the image besides its pixels.
+    /// What is known about the image in addition to its pixels.
     pub fn provenance(&self) -> Provenance<'_> {
         let mut metadata = Vec::new();
         if let Some(welcome) = &self.welcome {
@@ -160,16 +160,27 @@ impl Status {
 
     /// Says something to the user.
     pub fn say(&mut self, said: Result<String, String>) {
-        let is_bad = said.is_err();
-        let text = said.unwrap_or_else(|problem| problem);
-        let text = format::sentence(&text);
-        if is_bad && self.failures.len() < MOST_FAILURES {
-            self.failures.push(text.clone());
+        match said {
+            Ok(text) => self.show(&text, false),
+            Err(problem) => {
+                if self.failures.len() < MOST_FAILURES {
+                    self.failures.push(format::sentence(&problem));
+                }
+                self.show(&problem, true);
+            }
         }
-        self.notice = Some(Notice { text, is_bad, at: Instant::now() });
     }
 
-    /// What went wrong since this was asked last: for whoever has no window to read notices in.
+    /// Tells the user of something that is not as it should be, although what was asked for is done.
+    pub fn warn(&mut self, problem: &str) {
+        self.show(problem, true);
+    }
+
+    fn show(&mut self, text: &str, is_bad: bool) {
+        self.notice = Some(Notice { text: format::sentence(text), is_bad, at: Instant::now() });
+    }
+
+    /// What went wrong since the last call, for use without a window.
     pub fn take_failures(&mut self) -> Vec<String> {
         std::mem::take(&mut self.failures)
     }

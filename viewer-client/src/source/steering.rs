@@ -1,4 +1,4 @@
-//! Who steers, what the explorer did, and what the daemon said of it.
+//! Who steers, what the explorer did, and what the daemon said about it.
 
 use std::collections::VecDeque;
 use std::sync::Arc;

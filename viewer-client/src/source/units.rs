@@ -86,7 +86,8 @@ impl Measure {
     }
 }
 
-/// Brings what the daemon told of a path that starts at `light` into the units of the scene file.
+/// Converts what the daemon reported about a path that starts at `light` to the units of the scene
+/// file.
 pub fn in_file_units(
     mut detail: PathDetail,
     light: &VertexRecord,

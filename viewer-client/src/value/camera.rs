@@ -8,7 +8,7 @@ choices! {
     pub enum Side {
         /// Where the render camera stands, roughly.
         Front,
-        /// Opposite to the front.
+        /// From the opposite of the front.
         Back,
         /// From the left of the front.
         Left,

@@ -72,7 +72,7 @@ impl<T: Choice> Value for T {
     type Limits = ();
 
     fn form(name: &str, (): &()) -> String {
-        /// More words than these are told beside the form.
+        /// More words than this are listed after the form.
         const MOST: usize = 7;
         if T::VARIANTS.len() > MOST { name.to_uppercase() } else { all_words::<T>().join("|") }
     }

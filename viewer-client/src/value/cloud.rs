@@ -17,24 +17,24 @@ choices! {
 }
 
 choices! {
-    /// What becomes of paths that cross on the screen.
+    /// How paths that cross on the screen are combined.
     #[derive(Default)]
     pub enum Blend {
-        /// The newest lies on top, and on dark ground glows.
+        /// The newest is on top, and glows on a dark background.
         #[default]
         Newest,
-        /// Each counts by its opacity, near ones more, in whatever order they came.
+        /// Each counts by its opacity, near ones more, independently of their order.
         Weighted,
-        /// They add up like light, for dark ground.
+        /// They add up like light, for a dark background.
         Add,
     }
 }
 
 choices! {
-    /// How values become places on the ramp of colours.
+    /// How values are mapped to the colour ramp.
     #[derive(Default)]
     pub enum ColorScale {
-        /// Equal factors are equal steps.
+        /// Equal ratios are equal steps.
         #[default]
         Log,
         /// Equal differences are equal steps.
@@ -43,7 +43,7 @@ choices! {
 }
 
 choices! {
-    /// What the colour of a path says, in the order of the shader's codes.
+    /// What the colour of a path means, in the order of the shader's codes.
     #[derive(Default)]
     pub enum ColorMode {
         /// The light that the path carries.
@@ -51,11 +51,11 @@ choices! {
         Radiance,
         /// The strategy whose proposal it was.
         Strategy,
-        /// Its number of edges, on a ramp.
+        /// Its number of edges, on a colour ramp.
         Length,
-        /// Its luminance, on a ramp.
+        /// Its luminance, on a colour ramp.
         Luminance,
-        /// How many paths have come since, on a ramp.
+        /// How many paths have come since, on a colour ramp.
         Age,
         /// The kind of each vertex.
         Kind,
@@ -63,14 +63,14 @@ choices! {
         Chain,
         /// Its class, such as LSDE.
         Class,
-        /// Nothing: all paths alike.
+        /// Nothing: all paths look the same.
         Constant,
-        /// The throughput at each vertex, on a ramp: what is left of the light on its way from there
-        /// to the lens.
+        /// The throughput at each vertex, on a colour ramp: what is left of the light on its way
+        /// from there to the lens.
         Throughput,
-        /// How many steps its chain stayed, on a ramp.
+        /// How many steps its chain stayed, on a colour ramp.
         Dwell,
-        /// The probability with which it was accepted, on a ramp.
+        /// The probability with which it was accepted, on a colour ramp.
         Acceptance,
     }
 }

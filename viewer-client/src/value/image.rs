@@ -12,22 +12,22 @@ choices! {
         Image,
         /// The image to compare with.
         Reference,
-        /// Orange is brighter than the reference, blue darker.
+        /// Where it differs from the reference: orange is brighter, blue darker.
         Difference,
         /// Where the image is still wrong: the relative squared error against the reference.
         Error,
-        /// FLIP: how different a person sees image and reference who flips between them.
+        /// FLIP: the difference that a person perceives when flipping between image and reference.
         #[strum(message = "FLIP")]
         Flip,
-        /// Mean acceptance probability of proposals made from paths to here.
+        /// Mean acceptance probability of proposals made from paths that end here.
         Acceptance,
-        /// How long chains stay at a path to here, in steps.
+        /// How long chains stay at a path that ends here, in steps.
         Dwell,
-        /// How often chains come here, against the mean.
+        /// How often chains arrive here, relative to the mean.
         Visits,
-        /// Relative standard error of the light here, from how chains differ.
+        /// Relative standard error of the light here, estimated from how chains differ.
         Spread,
-        /// R-hat: whether chains agree how much light comes here.
+        /// R-hat: whether chains agree on how much light arrives here.
         #[strum(message = "R-hat")]
         Disagreement,
     }
@@ -56,16 +56,16 @@ choices! {
         #[default]
         #[strum(message = "RGB")]
         Rgb,
-        /// Red alone, as grey.
+        /// Red alone, in grey.
         #[strum(message = "R")]
         Red,
-        /// Green alone, as grey.
+        /// Green alone, in grey.
         #[strum(message = "G")]
         Green,
-        /// Blue alone, as grey.
+        /// Blue alone, in grey.
         #[strum(message = "B")]
         Blue,
-        /// Luminance, as grey.
+        /// Luminance, in grey.
         #[strum(message = "Y")]
         Luminance,
     }
@@ -75,13 +75,13 @@ choices! {
     /// How light becomes colour.
     #[derive(Default)]
     pub enum ToneCurve {
-        /// As screens expect light.
+        /// The sRGB curve that screens expect.
         #[default]
         #[strum(message = "sRGB")]
         Srgb,
-        /// A power of the light.
+        /// A power of the radiance.
         Gamma,
-        /// Luminance as a colour, over four decades.
+        /// Luminance as a colour, over four orders of magnitude.
         #[strum(message = "False colour")]
         False,
     }

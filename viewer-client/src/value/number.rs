@@ -26,13 +26,13 @@ pub const fn range<T: Copy>(low: T, high: T) -> Range<T> {
 }
 
 impl<T: Copy> Range<T> {
-    /// Equal factors are equal steps.
+    /// Equal ratios are equal steps.
     #[must_use]
     pub const fn log(self) -> Self {
         Self { logarithmic: true, ..self }
     }
 
-    /// With so many decimals.
+    /// With this many decimals.
     #[must_use]
     pub const fn decimals(self, decimals: usize) -> Self {
         Self { decimals, ..self }

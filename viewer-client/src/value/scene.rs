@@ -12,7 +12,7 @@ choices! {
         Shaded,
         /// Lit, each in one colour.
         Plain,
-        /// Their textures and colours alone, without light.
+        /// Textures and colours alone, unlit.
         Texture,
         /// Lit, with the edges of triangles.
         Edges,
@@ -24,13 +24,13 @@ choices! {
 }
 
 choices! {
-    /// How surfaces answer the light of the preview.
+    /// How surfaces are lit in the preview.
     #[derive(Default)]
     pub enum Lighting {
-        /// With a soft sky, so that nothing is black.
+        /// Under a soft sky, so that nothing is black.
         #[default]
         Soft,
-        /// One point light and Phong's model, with the numbers of the Lvis of 2014.
+        /// One point light and Phong's model, with the parameters of the Lvis of 2014.
         Phong,
     }
 }
@@ -54,21 +54,21 @@ choices! {
         /// Nothing.
         #[default]
         Off,
-        /// What has smaller x.
+        /// Everything with smaller x.
         X,
-        /// What has larger x.
+        /// Everything with larger x.
         #[strum(serialize = "-x")]
         #[serde(rename = "-x")]
         MinusX,
-        /// What has smaller y.
+        /// Everything with smaller y.
         Y,
-        /// What has larger y.
+        /// Everything with larger y.
         #[strum(serialize = "-y")]
         #[serde(rename = "-y")]
         MinusY,
-        /// What has smaller z.
+        /// Everything with smaller z.
         Z,
-        /// What has larger z.
+        /// Everything with larger z.
         #[strum(serialize = "-z")]
         #[serde(rename = "-z")]
         MinusZ,

@@ -100,7 +100,7 @@ impl Value for StrategySet {
             .split(',')
             .try_fold(Self(0), |set, number| Some(set.with(strategy(number)?, true)));
         set.ok_or_else(|| {
-            CommandError::no_choice(word, "all, numbers of strategies with commas between")
+            CommandError::no_choice(word, "all, numbers of strategies separated by commas")
         })
     }
 

@@ -110,8 +110,8 @@ choices! {
     /// Which keys there are.
     #[derive(Default)]
     pub enum KeyPreset {
-        /// Those of today's programs.
-        #[strum(message = "Today's keys")]
+        /// Those of present-day programs.
+        #[strum(message = "Modern keys")]
         #[default]
         Today,
         /// Those of the Lvis of 2014.
@@ -124,10 +124,10 @@ choices! {
     /// What dragging with the mouse does to the camera.
     #[derive(Default)]
     pub enum MousePreset {
-        /// As in Rerun: left turns, right shifts.
+        /// As in Rerun: left orbits, right pans.
         #[default]
         Rerun,
-        /// As in Blender: the middle button turns, with Shift it shifts, with Ctrl it comes closer.
+        /// As in Blender: the middle button orbits, with Shift it pans, with Ctrl it zooms.
         Blender,
         /// As in Maya: all with Alt, left turns, middle shifts, right comes closer.
         Maya,

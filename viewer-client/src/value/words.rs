@@ -38,7 +38,7 @@ pub enum CommandError {
         limits: String,
     },
     /// A word that is none of the choices.
-    #[error("`{found}` is none of: {choices}")]
+    #[error("`{found}` is not one of: {choices}")]
     NoChoice {
         /// What was given.
         found: String,
@@ -46,16 +46,16 @@ pub enum CommandError {
         choices: String,
     },
     /// A name that is none.
-    #[error("a name must have 1 to {0} letters")]
+    #[error("a name must have 1 to {0} characters")]
     NoName(usize),
     /// Numbers that are no path.
-    #[error("this is not a path as a link to a view writes it")]
+    #[error("this is not a path in the form used by links to views")]
     NoPath,
     /// A filter that cannot be read.
     #[error("the filter cannot be read: {0}")]
     BadFilter(String),
     /// Words after the end.
-    #[error("nothing may follow, but `{0}` does")]
+    #[error("unexpected `{0}` at the end")]
     TooMuch(String),
 }
 

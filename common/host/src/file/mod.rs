@@ -26,7 +26,7 @@ pub struct FileError {
     problem: io::Error,
 }
 
-/// Where a file is to go, looked at before the work starts whose result it will hold.
+/// The destination of a file, tested before the work starts whose result it will hold.
 #[derive(Clone, Debug)]
 pub struct Place {
     named: PathBuf,
@@ -44,7 +44,8 @@ enum Kind {
 impl Place {
     /// Fails where a file cannot be written at `path`.
     pub fn find(path: &Path) -> Result<Self, FileError> {
-        let kind = look(path).map_err(|problem| FileError { path: path.to_owned(), problem })?;
+        let kind =
+            destination(path).map_err(|problem| FileError { path: path.to_owned(), problem })?;
         Ok(Self { named: path.to_owned(), kind })
     }
 
@@ -210,14 +211,14 @@ impl Seek for Output {
     }
 }
 
-/// What stands at `path`, after trying whether it can be written.
-fn look(path: &Path) -> io::Result<Kind> {
+/// What is at `path`, after testing whether it can be written.
+fn destination(path: &Path) -> io::Result<Kind> {
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
         Ok(found) if !found.is_file() => may_write(path).map(|()| Kind::Stream),
         found => {
             if found.is_ok() {
-                // Who protects a file means it, though only its folder decides about a rename.
+                // A write-protected file is respected, although a rename only depends on its folder.
                 OpenOptions::new().write(true).open(path)?;
             }
             let file = behind_links(path)?;
@@ -259,7 +260,7 @@ fn behind_links(path: &Path) -> io::Result<PathBuf> {
             _ => return Ok(path),
         }
     }
-    Err(io::Error::other("its links lead in a circle"))
+    Err(io::Error::other("its symbolic links form a cycle"))
 }
 
 /// A new file in the folder of `file`, which goes when it is dropped.

@@ -35,7 +35,9 @@ pub enum PictureError {
         problem: ExrError,
     },
     /// There is no picture in it, or more than one.
-    #[error("`{file}` has {what} among its channels {channels}; call the picture's R, G and B")]
+    #[error(
+        "`{file}` has {what} among its channels {channels}; name the picture's channels R, G and B"
+    )]
     Channels {
         /// The file.
         file: String,
@@ -184,7 +186,7 @@ pub struct Plane {
     pub values: Vec<f32>,
 }
 
-/// What a file holds beside the picture.
+/// What a file holds in addition to the picture.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extras<'a> {
     /// Channels of their own.

@@ -13,7 +13,8 @@ words! {
         Acceptance = "acceptance", "probability with which the path was accepted";
         Dwell = "dwell", "steps that the chain stayed while it was watched";
         Chain = "chain", "number of the chain";
-        Epoch = "epoch", "number of the time between two changes of the chain's settings or seed";
+        Epoch = "epoch", "number of the epoch, the time between two changes of the chains' \
+            settings or seed";
         Step = "step", "step of the epoch at which the path was accepted";
         Diffuse = "diffuse", "vertices that scatter diffusely";
         Glossy = "glossy", "vertices that scatter glossily";

@@ -40,8 +40,7 @@ impl Described for FilmCondition {
         form.number(&coordinate("bottom", self.min[1], 1.0), &mut self.max[1])?;
         form.sign(")", "")?;
         let ordered = self.min[0] <= self.max[0] && self.min[1] <= self.max[1];
-        let complaint =
-            "a rectangle is written left, top, right, bottom; film points lie in 0 to 1";
+        let complaint = "a rectangle is left, top, right, bottom, each from 0 to 1";
         form.check(start, (!ordered).then_some(complaint))
     }
 }

@@ -83,7 +83,7 @@ pub trait Form {
 pub struct NumberPart {
     /// What it says.
     pub about: &'static str,
-    /// The least value that makes sense beside its neighbours.
+    /// The least value that makes sense given its neighbours.
     pub least: f64,
     /// The largest.
     pub most: f64,
@@ -128,7 +128,7 @@ pub struct Proposal<T> {
     pub label: String,
     /// What it means.
     pub meaning: &'static str,
-    /// What is made; nothing where the line only tells that there is nothing to choose.
+    /// What is made; nothing if the line only says that there is nothing to choose.
     pub made: Option<T>,
 }
 

@@ -31,13 +31,13 @@ impl Default for StrategyCondition {
 
 impl Described for StrategyCondition {
     fn describe(&mut self, form: &mut dyn Form) -> Walk {
-        const STRATEGY: Word = Word::new("strategy", "what made the path");
+        const STRATEGY: Word = Word::new("strategy", "the strategy that made the path");
         form.word(&STRATEGY)?;
         choose(form, &mut self.among)?;
         if self.among == Among::In {
             form.sign(" (", "")?;
             form.names(NameList::Strategies, &mut self.names)?;
-            return form.sign(")", "that is all");
+            return form.sign(")", "the end of the list");
         }
         self.names.truncate(1);
         let mut name = self.names.pop().unwrap_or_default();

@@ -42,7 +42,7 @@ words! {
     enum Check: "What is asked of the vertex" {
         Inside = "in", "lies in a region";
         On = "on", "lies on an object, a material or a light";
-        Is = "is", "scatters so, or is an end";
+        Is = "is", "scatters in some way, or is an end";
     }
 }
 
@@ -123,7 +123,7 @@ impl VertexCheck {
                 made,
             };
             let names = scene.names(on.into());
-            let empty = names.is_empty().then(|| line("The scene has none with a name", None));
+            let empty = names.is_empty().then(|| line("The scene has none that is named", None));
             let named = move |name: &str| line(name, Some(Self::On(on, Name::from(name))));
             names.into_iter().map(named).chain(empty)
         };

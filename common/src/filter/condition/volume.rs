@@ -154,7 +154,7 @@ impl Volume {
                 Some("a box needs finite numbers")
             }
             Self::Box { min, max } if !min.cmple(max).all() => {
-                Some("a box is written least corner first: x0, y0, z0, x1, y1, z1")
+                Some("a box is given with its smallest corner first: x0, y0, z0, x1, y1, z1")
             }
             Self::Sphere { .. } | Self::Box { .. } => None,
         }

@@ -122,7 +122,7 @@ impl LightPathExpression {
         );
         automaton.ok_or_else(|| {
             let message = "the light path expression needs too large a table; use smaller \
-                           repetitions, and `*` instead of large numbers";
+                repetition counts, or `*` instead of large ones";
             FilterError::new(self.span.clone(), message)
         })
     }

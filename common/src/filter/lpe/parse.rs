@@ -262,7 +262,7 @@ fn repeated(reader: &mut Reader<'_>, mut node: Node) -> Result<Node, Stop> {
         };
         node = Node::Repeat { node: Box::new(node), least, most };
     }
-    reader.wrong(reader.position(), "too many repetition signs in a row; one is enough")
+    reader.wrong(reader.position(), "too many repetition operators in a row; one is enough")
 }
 
 /// `n}`, `n,}`, `,m}` or `n,m}`.
@@ -294,6 +294,6 @@ fn number(reader: &mut Reader<'_>) -> Result<Option<u32>, Stop> {
     }
     match digits.parse() {
         Ok(number) if number <= MAX_REPEAT => Ok(Some(number)),
-        _ => reader.wrong(start, format!("a repetition counts to {MAX_REPEAT} at most")),
+        _ => reader.wrong(start, format!("a repetition count is at most {MAX_REPEAT}")),
     }
 }

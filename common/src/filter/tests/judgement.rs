@@ -195,7 +195,7 @@ fn the_claimed_error_is_the_real_one() {
     assert!(variance > 1.5 * 0.25 / 320.0, "the test tells the two apart: {variance}");
 }
 
-/// What the tally tells of paths of which none matches `text`.
+/// What the tally says about paths of which none matches `text`.
 fn nearest(text: &str, letters: &[&str]) -> Option<NearestMiss> {
     let filter = compiled(text);
     let mut tally = FilterTally::new(1, &filter);

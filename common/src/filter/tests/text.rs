@@ -27,7 +27,7 @@ fn spellings_mean_the_same() {
 const FAULTS: &[(&str, usize, &str)] = &[
     ("any in sphere(0, 0, 0)", 21, "`,`"),
     ("any in sphere(0, 0, 0, 0)", 7, "radius"),
-    ("any in box(1, 0, 0, 0, 1, 1)", 7, "least corner"),
+    ("any in box(1, 0, 0, 0, 1, 1)", 7, "smallest corner"),
     ("any in cone(1)", 7, "sphere"),
     ("any on metal", 7, "material"),
     ("any under sphere(0, 0, 0, 1)", 4, "through"),

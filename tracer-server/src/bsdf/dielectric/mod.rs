@@ -44,15 +44,16 @@ impl Model for DielectricDescription {
     const PARAMETERS: &'static [Parameter] = &[
         Parameter {
             name: "eta",
-            about: "index of refraction behind the surface over that in front of it; needed",
+            about: "index of refraction behind the surface divided by that in front of it; \
+                required",
         },
         Parameter {
             name: "reflectance",
-            about: "tint of what is reflected, in [0, 1]: a number or [r, g, b]; default 1",
+            about: "tint of the reflection, in [0, 1]: a number or [r, g, b]; default 1",
         },
         Parameter {
             name: "transmittance",
-            about: "tint of what is refracted at each crossing, in [0, 1]; default 1",
+            about: "tint of the refraction at each crossing, in [0, 1]; default 1",
         },
         Parameter {
             name: "roughness",
@@ -62,7 +63,7 @@ impl Model for DielectricDescription {
     const PLUGINS: &'static [&'static str] = &["dielectric", "thindielectric", "roughdielectric"];
 
     fn read<G: Given>(given: &mut G) -> Result<Self, G::Error> {
-        let missing = "the model `dielectric` needs it (glass is 1.5)";
+        let missing = "the model `dielectric` requires it (glass is 1.5)";
         Ok(Self {
             eta: given.number("eta")?.ok_or_else(|| given.error("eta", missing))?,
             reflectance: given.color("reflectance")?.unwrap_or(Rgb::WHITE),

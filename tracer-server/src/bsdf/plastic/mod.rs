@@ -46,13 +46,13 @@ impl Model for PlasticDescription {
     const PARAMETERS: &'static [Parameter] = &[
         Parameter {
             name: "reflectance",
-            about: "albedo of the paint, in [0, 1]: a number, [r, g, b] or a texture; needed",
+            about: "albedo of the paint, in [0, 1]: a number, [r, g, b] or a texture; required",
         },
         Parameter { name: "eta", about: "index of refraction of the coat; default 1.5" },
         Parameter {
             name: "specular",
-            about: "in place of eta: what the coat reflects at normal incidence, in [0, 1], and \
-                    more at other angles by Schlick's approximation",
+            about: "instead of eta: reflectance of the coat at normal incidence, in [0, 1], with \
+                Schlick's approximation for other angles",
         },
         Parameter {
             name: "roughness",
@@ -60,8 +60,8 @@ impl Model for PlasticDescription {
         },
         Parameter {
             name: "nonlinear",
-            about: "true when light that goes to and fro below the coat takes on the paint's \
-                    colour each time; default false",
+            about: "true if inner reflections below the coat deepen the paint's colour; default \
+                false",
         },
     ];
     const PLUGINS: &'static [&'static str] = &["plastic", "roughplastic"];
@@ -87,7 +87,7 @@ impl Model for PlasticDescription {
             "roughplastic" => match mitsuba::roughness(given)? {
                 NumberInput::Constant(roughness) => roughness,
                 NumberInput::Texture { .. } => {
-                    given.warn("the roughness of a coat reads no texture: 0.1 is used");
+                    given.warn("the roughness of a coat cannot be a texture: 0.1 is used");
                     mitsuba::ROUGHNESS
                 }
             },

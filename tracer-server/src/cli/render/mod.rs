@@ -36,10 +36,10 @@ use report::{metadata, print, work};
 
 /// Mutations, or samples, for each pixel unless the user says otherwise.
 const DEFAULT_PER_PIXEL: u64 = 256;
-/// How long the end waits for whoever reads the report.
+/// How long the end of the program waits for the reader of the report.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Renders one image, with a table of what the chains did.
+/// Renders one image, and prints a table of what the chains did.
 ///
 /// The same scene, seed and options give the same image, whatever the number of threads. Ctrl-C, SIGTERM
 /// and the end of the terminal write the image so far; exit codes are then 130, 143 and 129. An image
@@ -59,7 +59,7 @@ Examples:
 pub struct RenderArgs {
     /// A built-in scene, a .toml, .obj or Mitsuba .xml file, or a directory that holds one.
     pub scene: String,
-    /// Where to put the image: .exr keeps linear radiance, .png is exposed to be looked at; a pipe
+    /// Where to write the image: .exr keeps linear radiance, .png is exposed for viewing; a pipe
     /// without a name gets EXR.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
@@ -70,7 +70,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", conflicts_with = "time")]
     #[arg(value_parser = RangedU64ValueParser::<u64>::new().range(1..=1 << 32))]
     pub mutations_per_pixel: Option<u64>,
-    /// Render for so many seconds, seeding included.
+    /// Render for this many seconds, seeding included.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time: Option<Duration>,
     /// The chains.
@@ -93,7 +93,7 @@ pub struct RenderArgs {
     /// An image to measure the error against.
     #[arg(long, value_name = "REF.exr")]
     pub reference: Option<PathBuf>,
-    /// Where to put the report as JSON.
+    /// Where to write the report as JSON.
     #[arg(long, value_name = "FILE")]
     pub stats_json: Option<PathBuf>,
 }
@@ -104,7 +104,7 @@ pub struct PrimaryArgs {
     /// The renderer whose random numbers `--integrator pssmlt` moves [default: bdpt].
     #[arg(long, value_enum, value_name = "RENDERER")]
     pub primary_sampler: Option<PrimarySamplerName>,
-    /// Share of the steps of `--integrator pssmlt` that draw all numbers anew [default: 0.3].
+    /// Share of the steps of `--integrator pssmlt` that draw all numbers afresh [default: 0.3].
     #[arg(long, value_name = "SHARE", value_parser = share)]
     pub large_step: Option<f64>,
 }
@@ -125,7 +125,7 @@ impl PrimaryArgs {
         let silent = self.primary_sampler.is_none() && self.large_step.is_none();
         ensure!(
             silent || integrator == IntegratorName::Pssmlt,
-            "--primary-sampler and --large-step are for --integrator pssmlt"
+            "--primary-sampler and --large-step only apply to --integrator pssmlt"
         );
         let sampler = self.primary_sampler.map_or(usual.sampler, |name| match name {
             PrimarySamplerName::Bdpt => PrimarySampler::Bdpt,
@@ -150,7 +150,7 @@ pub(super) fn seconds(text: &str) -> Result<Duration, String> {
 pub fn run(args: &RenderArgs) -> anyhow::Result<ExitCode> {
     let job = Job::new(args)?;
     let file = args.output.display();
-    let stopper = Stopper::listen(format!("`{file}` gets the image so far"))?;
+    let stopper = Stopper::listen(format!("saving the image so far in `{file}`"))?;
     job.run(&stopper)
 }
 
@@ -162,6 +162,7 @@ struct Job {
     reference: Option<Film>,
     image: Destination,
     stats: Option<Place>,
+    film_out: Option<Place>,
     replicates: ReplicateArgs,
 }
 
@@ -172,6 +173,7 @@ impl Job {
         let dial = args.replicates.dial(args.integrator)?;
         let image = Destination::find(&args.output)?;
         let stats = args.stats_json.as_deref().map(Place::find).transpose()?;
+        let film_out = args.replicates.film_out.as_deref().map(Place::find).transpose()?;
         ensure!(
             args.stats_json.as_ref() != Some(&args.output),
             "--stats-json and --output name the same file"
@@ -192,7 +194,7 @@ impl Job {
             dial,
         };
         let replicates = args.replicates.clone();
-        Ok(Self { scene, settings, reference, image, stats, replicates })
+        Ok(Self { scene, settings, reference, image, stats, film_out, replicates })
     }
 
     fn run(&self, stopper: &Stopper) -> anyhow::Result<ExitCode> {
@@ -200,13 +202,14 @@ impl Job {
         let begun = self.replicates.begun()?;
         let what = format!("{}, {}", scene.name(), settings.integrator.name());
         let meter = Meter::new(what, "rendered");
-        let Rendering { image, mut report, errors } = self.make(begun, stopper.stop(), &meter)?;
+        let (rendering, kept) = self.make(begun, stopper.stop(), &meter)?;
+        let Rendering { image, mut report, errors } = rendering;
         meter.finish();
         let stopped = if report.stopped { stopper.ending() } else { None };
         let code = stopped.map_or(ExitCode::SUCCESS, |ending| ending.exit_code().into());
         let file = self.image.path().display();
         if report.stopped && report.mutations == 0 {
-            tracing::warn!("stopped before there was an image: `{file}` is as it was");
+            tracing::warn!("stopped before there was an image: `{file}` is unchanged");
             return Ok(code);
         }
         if let Some(reference) = &self.reference {
@@ -224,27 +227,39 @@ impl Job {
             tracing::warn!("stopped: `{file}` holds the image of the {done} {work} so far");
         }
         self.tell(&report)?;
+        // The picture is safe; that its film is not must still be no success.
+        kept?;
         Ok(code)
     }
 
-    /// Makes the picture, and keeps its replicates where that is wanted.
-    fn make(&self, begun: Option<Part>, stop: &Stop, meter: &Meter) -> anyhow::Result<Rendering> {
+    /// Makes the picture, and keeps its replicates where that is wanted; with what came of the last time
+    /// that they were kept.
+    fn make(
+        &self,
+        begun: Option<Part>,
+        stop: &Stop,
+        meter: &Meter,
+    ) -> anyhow::Result<(Rendering, anyhow::Result<()>)> {
         let Self { scene, settings, replicates, .. } = self;
         if settings.integrator != Integrator::Auto {
-            return Ok(render_until(stop, scene, settings, |at| show(meter, at)));
+            return Ok((render_until(stop, scene, settings, |at| show(meter, at)), Ok(())));
         }
-        let mut save = |part: &Part| match &replicates.film_out {
-            Some(file) => super::merge::write(file, part),
-            None => Ok(()),
+        let mut kept = Ok(());
+        let mut save = |part: &Part| {
+            kept = self.film_out.as_ref().map_or(Ok(()), |place| super::merge::write(place, part));
+            if let Err(error) = &kept {
+                tracing::warn!("{error:#}");
+            }
         };
         let wish = Wish {
             selection: replicates.replicates.clone(),
             begun,
             until: replicates.until,
             stop: stop.clone(),
-            save: replicates.film_out.is_some().then_some(&mut save),
+            save: self.film_out.is_some().then_some(&mut save),
         };
-        auto::render(scene, settings, wish, &mut |at| show(meter, at))
+        let rendering = auto::render(scene, settings, wish, &mut |at| show(meter, at))?;
+        Ok((rendering, kept))
     }
 
     /// Prints the report, on standard error where the image itself went to standard output.
@@ -270,8 +285,8 @@ pub(super) fn check_reference(reference: &Film, scene: &Scene) -> anyhow::Result
     let camera = scene.camera();
     ensure!(
         (reference.width(), reference.height()) == (camera.width, camera.height),
-        "the reference has {} x {} pixels and the film {} x {}; choose the film with --width and \
-         --height",
+        "the reference has {} x {} pixels and the film {} x {}; set the film's size with --width \
+        and --height",
         reference.width(),
         reference.height(),
         camera.width,
@@ -377,7 +392,7 @@ mod tests {
         }
         for integrator in ["bdpt", "path"] {
             let complaint = complaint(&line(integrator, "--chains 8"));
-            assert!(complaint.starts_with("--chains would change nothing"), "{complaint}");
+            assert!(complaint.starts_with("--chains would have no effect"), "{complaint}");
         }
         Job::new(&parse(&line("pssmlt", "--chains 8")).expect("valid")).expect("it has chains");
         let same = format!("--stats-json {}", file.display());

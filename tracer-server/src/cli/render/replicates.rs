@@ -1,4 +1,4 @@
-//! What `--integrator auto` is told of its replicates.
+//! Options for the replicates of `--integrator auto`.
 
 use std::path::PathBuf;
 
@@ -12,8 +12,8 @@ use crate::target::Base;
 /// Which replicates `--integrator auto` makes, what becomes of them, and how it divides the work.
 #[derive(Args, Clone, Debug, Default)]
 pub struct ReplicateArgs {
-    /// Make these replicates only, such as `0..8`, `8..` (to the last that `--mutations-per-pixel`
-    /// asks for), or what an earlier render has printed.
+    /// Render only these replicates, such as `0..8`, `8..` (to the last that
+    /// `--mutations-per-pixel` asks for), or what an earlier render has printed.
     #[arg(long, value_name = "A..B", conflicts_with = "until", help_heading = REPLICATES)]
     pub replicates: Option<Selection>,
     /// Render until the noise is down to this, as `1%` or `0.01`: the root of the relative mean squared
@@ -24,7 +24,7 @@ pub struct ReplicateArgs {
     /// files up.
     #[arg(long, value_name = "FILE.lvf", help_heading = REPLICATES)]
     pub film_out: Option<PathBuf>,
-    /// Go on from the file of `--film-out`, where it is there.
+    /// Continue from the file of `--film-out`, if it exists.
     #[arg(long, requires = "film_out", help_heading = REPLICATES)]
     pub resume: bool,
     /// How it divides the work.
@@ -35,7 +35,7 @@ pub struct ReplicateArgs {
 /// How `--integrator auto` divides the work between base samples and chains.
 #[derive(Args, Clone, Debug, Default)]
 pub struct DialArgs {
-    /// Who draws the base samples; the pilot's choice without.
+    /// Who draws the base samples [default: the pilot's choice].
     #[arg(long, value_enum, value_name = "SAMPLER", help_heading = REPLICATES)]
     pub base: Option<BaseName>,
     /// Leave light to the chains that base samples would show brighter than this many times the mean
@@ -61,7 +61,7 @@ impl DialArgs {
     pub(crate) fn settings(&self, integrator: IntegratorName) -> anyhow::Result<Dial> {
         ensure!(
             (self.base.is_none() && self.tau.is_none()) || integrator == IntegratorName::Auto,
-            "--base and --tau are for --integrator auto"
+            "--base and --tau only apply to --integrator auto"
         );
         let base = self.base.map(|name| match name {
             BaseName::Path => Base::Path,
@@ -77,7 +77,7 @@ impl ReplicateArgs {
         let silent = self.replicates.is_none() && self.until.is_none() && self.film_out.is_none();
         ensure!(
             silent || integrator == IntegratorName::Auto,
-            "--replicates, --until and --film-out are for --integrator auto"
+            "--replicates, --until and --film-out only apply to --integrator auto"
         );
         self.dial.settings(integrator)
     }
@@ -89,7 +89,7 @@ impl ReplicateArgs {
         };
         ensure!(
             self.resume,
-            "`{}` is there already: give --resume to go on from it, or another name",
+            "`{}` exists already: use --resume to continue it, or another name",
             file.display()
         );
         crate::cli::merge::read(file).map(Some)

@@ -11,7 +11,7 @@ use crate::render::Report;
 /// Kurtosis over replicates above which their spread tells little.
 const HEAVY: f64 = 12.0;
 
-/// What an EXR file's header tells of the image.
+/// What the header of an EXR file says about the image.
 pub(super) fn metadata(report: &Report) -> Vec<(String, String)> {
     let entries: [(&str, &dyn std::fmt::Display); 12] = [
         ("version", &env!("CARGO_PKG_VERSION")),
@@ -58,7 +58,7 @@ pub(super) fn work(report: &Report) -> &'static str {
 
 pub(super) fn print(out: &mut impl Write, report: &Report, file: &Destination) -> io::Result<()> {
     if !report.strategies.is_empty() {
-        writeln!(out, "Strategies; rates are shares of all tries, failures included")?;
+        writeln!(out, "Strategies; rates are relative to all proposals, failures included")?;
         writeln!(out, "{}", strategy_table(report).trim_fmt())?;
     }
     let work = work(report);
@@ -86,7 +86,7 @@ pub(super) fn print(out: &mut impl Write, report: &Report, file: &Destination) -
         writeln!(
             out,
             "mean luminance b = {:.6} +- {:.6} ({:.2} %) from {} samples in {:.2} s; {} chains, \
-             longest stay at one path {} steps; {} proposals were no number",
+             longest stay at one path {} steps; {} proposals were not finite",
             report.normalization,
             report.normalization_error,
             100.0 * report.normalization_error / report.normalization.max(f64::MIN_POSITIVE),
@@ -108,7 +108,7 @@ pub(super) fn print(out: &mut impl Write, report: &Report, file: &Destination) -
         )?;
         if report.reference_missing > 0 {
             let missing = report.reference_missing;
-            writeln!(out, "the reference has no value for {missing} pixels, which are left out")?;
+            writeln!(out, "the reference has no value for {missing} pixels, which are ignored")?;
         }
     }
     writeln!(out, "written to {}", file.path().display())
@@ -120,26 +120,31 @@ fn print_replicates(out: &mut impl Write, report: &Report) -> io::Result<()> {
         let base = outlook.base.map_or("no base samples", |base| base.name());
         writeln!(
             out,
-            "base: {base}, tau {:.3}; chains have {:.2} % of the light, with {:.2} mutations for each \
-             base sample; {}",
+            "base: {base}, tau {:.3}; chains carry {:.2} % of the light, with {:.2} mutations per \
+            base sample; {}",
             outlook.tau,
             100.0 * outlook.chains_share,
             outlook.mutations_per_sample,
             match (report.chains, outlook.is_equalised) {
-                (0, _) => "chains would not pay, so there are none".to_owned(),
+                (0, _) => "chains would not pay off, so there are none".to_owned(),
                 (n, false) => format!("{n} chains in each replicate"),
-                (n, true) =>
-                    format!("{n} chains in each replicate, dark parts as often as bright ones"),
+                (n, true) => format!(
+                    "{n} chains in each replicate, which visit dark parts as often as bright ones"
+                ),
             },
         )?;
     }
     if report.chains > 0 {
         writeln!(
             out,
-            "mean luminance of what chains have, b = {:.6} +- {:.6}; pools of {} samples; longest stay \
-             at one path {} steps; {} proposals were no number",
+            "mean luminance of the chains' share, b = {:.6} +- {}; pools of {} samples; longest stay at \
+             one path {} steps; {} proposals were not finite",
             report.normalization,
-            report.normalization_error,
+            // A single replicate has no spread.
+            match report.normalization_error {
+                error if error.is_finite() => format!("{error:.6}"),
+                _ => "unknown".to_owned(),
+            },
             report.bootstrap_samples,
             report.longest_dwell,
             report.not_finite,
@@ -150,13 +155,14 @@ fn print_replicates(out: &mut impl Write, report: &Report) -> io::Result<()> {
         .map_or_else(|| "unknown".to_owned(), |noise| format!("{:.2} %", 100.0 * noise));
     writeln!(
         out,
-        "{} replicates after {:.2} s of pilot; noise {noise}; again with --replicates {}",
+        "{} replicates after {:.2} s of pilot; noise {noise}; reproduce with --replicates {}",
         report.replicates, report.seeding_seconds, report.selection,
     )?;
     if report.mean_kurtosis.is_some_and(|kurtosis| kurtosis > HEAVY) {
         writeln!(
             out,
-            "few replicates have most of the light (kurtosis {:.0}): the errors are not to be trusted",
+            "a few replicates carry most of the light (kurtosis {:.0}): the error estimates \
+            cannot be trusted",
             report.mean_kurtosis.unwrap_or(0.0)
         )?;
     }
@@ -169,13 +175,13 @@ fn strategy_table(report: &Report) -> Table {
     table.load_style(UTF8_FULL_CONDENSED).set_header([
         "strategy",
         "weight",
-        "tries",
+        "proposals",
         "generated",
-        "of tries",
+        "of proposals",
         "accepted",
-        "of tries",
-        "mean a of tries",
-        "why tries failed, of tries",
+        "of proposals",
+        "mean a of proposals",
+        "why proposals failed",
     ]);
     let percent =
         |part: u64, whole: u64| format!("{:.2} %", 100.0 * part as f64 / whole.max(1) as f64);

@@ -58,7 +58,7 @@ impl Reader<'_> {
                 Ok(inner.map(|model| Model { two_sided: true, ..model }))
             }
             "mask" | "bumpmap" | "normalmap" | "bump" => {
-                self.warn(element, "has no effect; what is nested in it has");
+                self.warn(element, "is ignored; the model nested in it is used");
                 self.nested(element, depth)
             }
             "blendbsdf" | "mixturebsdf" => {
@@ -73,7 +73,7 @@ impl Reader<'_> {
                     let known = MODELS.iter().flat_map(|kind| kind.plugins).copied();
                     let known = known.collect::<Vec<_>>().join(", ");
                     let message =
-                        format!("no such scattering model here; those known: {known}, {WRAPPERS}");
+                        format!("unknown scattering model; supported: {known}, {WRAPPERS}");
                     element.error(message)
                 })??;
                 Ok(Some(Model { bsdf, two_sided: false }))

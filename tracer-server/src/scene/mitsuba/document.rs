@@ -11,7 +11,7 @@ use crate::scene::reading::diagnostic::{LoadError, Place, Warning};
 
 /// The most nodes of a document that are read.
 const MAX_NODES: u32 = 4_000_000;
-/// How many unread elements are told one by one.
+/// How many unread elements are reported one by one.
 const MAX_TOLD: usize = 50;
 /// The most names that a message lists.
 const MAX_NAMES: usize = 30;
@@ -69,7 +69,7 @@ impl<'a> Source<'a> {
                 column: Some(position.col as usize),
                 ..Place::line(file, position.row as usize)
             };
-            place.error(format!("this is no well-formed XML: {error}"))
+            place.error(format!("this is not well-formed XML: {error}"))
         })?;
         let newlines = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
         let source = Self {
@@ -107,8 +107,10 @@ impl<'a> Source<'a> {
                     if let Some(before) = ids.insert(id.to_owned(), node.id().get()) {
                         let line = self.at(before).map(|node| self.place(&node).to_string());
                         let line = line.unwrap_or_default();
-                        let message =
-                            format!("the id `{id}` is taken, by the element at {line}; rename one");
+                        let message = format!(
+                            "the id `{id}` is already used by the element at {line}; \
+                                rename one of them"
+                        );
                         return Err(place().error(message));
                     }
                 }
@@ -154,7 +156,7 @@ impl<'a> Source<'a> {
                 let known = listed(self.defaults.keys());
                 return Err(format!(
                     "`${name}` has no value: add `<default name=\"{name}\" value=\"...\"/>`; \
-                     those there are: {known}"
+                    defined names: {known}"
                 ));
             };
             out.push_str(value);
@@ -362,7 +364,7 @@ impl<'a> Element<'a> {
         let found = self.source.ids.get(&id).and_then(|&index| self.source.at(index));
         let node = found.ok_or_else(|| {
             let known = listed(self.source.ids.keys());
-            self.error(format!("nothing has the id `{id}`; the ids: {known}"))
+            self.error(format!("no element has the id `{id}`; the ids are {known}"))
         })?;
         Ok(Self { source: self.source, node })
     }

@@ -11,7 +11,7 @@ use crate::scene::reading::image::read_sky;
 /// Half angle in degrees of a spot that does not tell its own.
 const DEFAULT_CUTOFF: f64 = 20.0;
 
-/// Reads an `emitter`, and what it asks for in vain; `None` for a kind that is not known here.
+/// Reads an `emitter`, and what of it is not supported; `None` for an unknown kind.
 pub(super) fn read(
     emitter: Element<'_>,
     warnings: &mut Vec<Warning>,
@@ -25,7 +25,9 @@ pub(super) fn read(
             intensity: color(emitter, "intensity")?,
         },
         "spot" => {
-            warnings.push(emitter.warning("its rim falls off smoothly in the cosine of the angle"));
+            warnings.push(
+                emitter.warning("its intensity falls off smoothly with the cosine of the angle"),
+            );
             let cutoff = emitter.number("cutoff_angle")?.unwrap_or(DEFAULT_CUTOFF);
             LightKind::Spot {
                 position: place,
@@ -46,8 +48,8 @@ pub(super) fn read(
         },
         "envmap" => image(emitter, DMat3::from_mat4(to_world))?,
         _ => {
-            let message = "left out: no such emitter here; those known: area (in a shape), point, \
-                           spot, directional, constant, envmap";
+            let message = "ignored: unknown emitter; supported: area (in a shape), point, spot, \
+                directional, constant, envmap";
             warnings.push(emitter.warning(message));
             return Ok(None);
         }

@@ -39,11 +39,11 @@ pub(super) fn read(path: &Path, name: &str) -> Result<Read, LoadError> {
     let source = Source::parse(text.trim_start_matches('\u{feff}'), path)?;
     let root = source.root().read();
     if root.tag() != "scene" {
-        return Err(root.error("no scene: the outermost element must be `<scene>`"));
+        return Err(root.error("not a scene: the outermost element must be `<scene>`"));
     }
     if let Some(medium) = root.find("medium") {
-        let message = "participating media are not modelled, and without them the picture would \
-                       be another one; remove every `<medium>` to see the surfaces alone";
+        let message = "participating media are not supported, and the picture would be wrong \
+            without them; remove every `<medium>` to render the surfaces alone";
         return Err(medium.error(message));
     }
     let mut loader = Loader::new(path, name);
@@ -111,7 +111,8 @@ impl Loader {
             let read = sensor::read(sensor)?;
             self.warnings.extend(read.warnings);
             if self.is_clipped(&read.view.camera, read.clip) {
-                let message = "near_clip and far_clip are ignored: what lies outside is shown too";
+                let message = "near_clip and far_clip are ignored: everything is shown, whatever \
+                    its distance";
                 self.warnings.push(sensor.warning(message));
             }
             self.origins.camera = sensor.place();
@@ -148,7 +149,7 @@ impl Loader {
         let Shape { name, geometry, warnings } = shape::read(element)?;
         self.warnings.extend(warnings);
         let Some(material) = self.material_of(element, &name)? else {
-            self.warnings.push(element.warning("left out, since nothing sees it"));
+            self.warnings.push(element.warning("ignored, because nothing can see it"));
             return Ok(());
         };
         match geometry {
@@ -215,7 +216,7 @@ impl Loader {
 fn emission_of(shape: Element<'_>) -> Result<Option<Rgb>, LoadError> {
     let Some(emitter) = shape.objects("emitter")?.first().copied() else { return Ok(None) };
     if emitter.plugin()? != "area" {
-        return Err(emitter.error("only the emitter `area` belongs to a shape"));
+        return Err(emitter.error("a shape can only have an emitter of type `area`"));
     }
     let radiance = emitter.color("radiance")?;
     radiance.map(Some).ok_or_else(|| emitter.error("the parameter `radiance` is missing"))

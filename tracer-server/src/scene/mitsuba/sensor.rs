@@ -13,7 +13,7 @@ const DEFAULT_FILM: [u32; 2] = [768, 576];
 /// The diagonal of a frame of 35 mm film in millimetres, which focal lengths refer to.
 const DIAGONAL_35_MM: f64 = 43.266_615_305_567_87;
 
-/// A sensor, and what it asks for in vain.
+/// A sensor, and what of it is not supported.
 #[derive(Debug)]
 pub(super) struct Sensor {
     /// Camera and film.
@@ -33,7 +33,7 @@ pub(super) fn read(sensor: Element<'_>) -> Result<Sensor, LoadError> {
         "perspective" => None,
         "thinlens" => Some(thin_lens(sensor)?),
         _ => {
-            let message = "no such sensor here; those known: perspective, thinlens";
+            let message = "unknown sensor; supported: perspective, thinlens";
             return Err(sensor.error(message));
         }
     };
@@ -85,7 +85,7 @@ fn film(sensor: Element<'_>, warnings: &mut Vec<Warning>) -> Result<[u32; 2], Lo
         crop |= film.integer(name)?.is_some();
     }
     if crop {
-        warnings.push(film.warning("the crop is ignored: the whole picture is made"));
+        warnings.push(film.warning("the crop window is ignored: the whole picture is rendered"));
     }
     for filter in film.objects("rfilter")? {
         let kind = filter.plugin()?;

@@ -34,7 +34,7 @@ pub(super) enum Geometry {
     },
 }
 
-/// A shape, and what it asks for in vain.
+/// A shape, and what of it is not supported.
 #[derive(Debug)]
 pub(super) struct Shape {
     /// A name for people.
@@ -74,8 +74,8 @@ pub(super) fn read(element: Element<'_>) -> Result<Shape, LoadError> {
             vec![cylinder(element)?]
         }
         _ => {
-            let message = "no such shape here; those known: obj, ply, sphere, rectangle, cube, \
-                           disk, cylinder. Remove it, or convert it to one of these";
+            let message = "unknown shape; supported: obj, ply, sphere, rectangle, cube, disk, \
+                cylinder. Remove it, or convert it to one of these";
             return Err(element.error(message));
         }
     };

@@ -35,8 +35,8 @@ impl Textures {
             "bitmap" => self.bitmap(element)?,
             "checkerboard" => self.checkerboard(element)?,
             _ => {
-                let message = "no such texture here; those known: bitmap, checkerboard. Grey \
-                               stands for it";
+                let message = "unknown texture; supported: bitmap, checkerboard. Grey is used \
+                    instead";
                 self.warnings.push(element.warning(message));
                 Rgb::grey(UNKNOWN_GREY).into()
             }

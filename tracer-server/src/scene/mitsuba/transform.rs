@@ -11,7 +11,7 @@ impl Element<'_> {
     pub(super) fn transform(&self, name: &str) -> Result<DMat4, LoadError> {
         let Some(transform) = self.property(name)? else { return Ok(DMat4::IDENTITY) };
         if transform.tag() != "transform" {
-            return Err(transform.error("a `<transform>` belongs here"));
+            return Err(transform.error("expected a `<transform>`"));
         }
         let mut product = DMat4::IDENTITY;
         for step in transform.children() {
@@ -19,8 +19,8 @@ impl Element<'_> {
         }
         let linear = DMat3::from_mat4(product).determinant();
         if !product.is_finite() || !linear.is_finite() || linear == 0.0 {
-            let message = "its steps squash space flat or leave the range of numbers; no scale \
-                           may be zero";
+            let message = "its steps are singular or exceed the range of numbers; no scale may be \
+                zero";
             return Err(transform.error(message));
         }
         Ok(product)
@@ -41,8 +41,7 @@ impl Element<'_> {
             "lookat" | "lookAt" | "look_at" => self.look_at(),
             "matrix" => self.matrix(),
             _ => Err(self.error(
-                "no step of a transform; those known: translate, rotate, scale, \
-                                 lookat, matrix",
+                "not a step of a transform; supported: translate, rotate, scale, lookat, matrix",
             )),
         }
     }
@@ -59,7 +58,8 @@ impl Element<'_> {
             forward.any_orthonormal_vector()
         };
         let left = up.cross(forward).try_normalize();
-        let left = left.ok_or_else(|| self.error("up is zero or points along the view"))?;
+        let left =
+            left.ok_or_else(|| self.error("up is zero or parallel to the view direction"))?;
         let axes = [left, forward.cross(left), forward];
         let [x, y, z] = axes.map(|axis| axis.extend(0.0));
         Ok(DMat4::from_cols(x, y, z, origin.extend(1.0)))
@@ -74,13 +74,14 @@ impl Element<'_> {
         } else if let Ok(rows) = <[f64; 9]>::try_from(numbers.as_slice()) {
             DMat4::from_mat3(DMat3::from_cols_array(&rows).transpose())
         } else {
-            let message = format!("{} numbers where 16 or 9 belong, row by row", numbers.len());
+            let message =
+                format!("{} numbers where 16 or 9 are expected, row by row", numbers.len());
             return Err(self.error(message));
         };
         if matrix.row(3) == DVec4::W {
             Ok(matrix)
         } else {
-            Err(self.error("the last row must be 0 0 0 1: no perspective among transforms"))
+            Err(self.error("the last row must be 0 0 0 1: transforms cannot contain perspective"))
         }
     }
 }

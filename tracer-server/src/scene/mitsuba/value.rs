@@ -33,7 +33,7 @@ fn triple(value: &str) -> Result<DVec3, String> {
     match numbers(value)?.as_slice() {
         [all] => Ok(DVec3::splat(*all)),
         [x, y, z] => Ok(DVec3::new(*x, *y, *z)),
-        other => Err(format!("{} numbers where one or three belong", other.len())),
+        other => Err(format!("{} numbers where one or three are expected", other.len())),
     }
 }
 
@@ -57,7 +57,7 @@ impl Element<'_> {
     pub(super) fn number(&self, name: &str) -> Result<Option<f64>, LoadError> {
         let Some(element) = self.property(name)? else { return Ok(None) };
         if !matches!(element.tag(), "float" | "integer") {
-            return Err(element.error("a number belongs here, as `<float>` or `<integer>`"));
+            return Err(element.error("expected a number, as `<float>` or `<integer>`"));
         }
         element.needed("value")?;
         element.attribute_number("value")
@@ -126,12 +126,12 @@ impl Element<'_> {
         let spectral = "colours are computed in RGB; give `<rgb value=\"r, g, b\"/>` instead";
         match self.tag() {
             "rgb" | "srgb" | "spectrum" | "float" | "integer" | "color" => {}
-            "texture" => return Err(self.error("a texture cannot stand here; give a colour")),
+            "texture" => return Err(self.error("a texture is not possible here; give a colour")),
             _ => return Err(self.error(spectral)),
         }
         let Some(value) = self.attribute("value")? else { return Err(self.error(spectral)) };
         if value.contains(':') {
-            return Err(self.error(format!("a spectrum over wavelengths: {spectral}")));
+            return Err(self.error(format!("it is a spectrum over wavelengths: {spectral}")));
         }
         if let Some(codes) = hex(&value) {
             let [r, g, b] = codes.map(|code| Coding::Srgb.decode(code));

@@ -14,7 +14,7 @@ pub(crate) struct MtlText {
     pub(crate) text: String,
     /// Where each material begins.
     pub(crate) places: BTreeMap<String, Place>,
-    /// What the file asks for in vain.
+    /// What in the file is not supported.
     pub(crate) warnings: Vec<Warning>,
 }
 
@@ -29,7 +29,8 @@ pub(crate) fn scan(text: &str, file: &Path, out: &mut MtlText) -> Result<(), Loa
                 return Err(place.error("newmtl without a name"));
             }
             if let Some(before) = out.places.get(rest.as_ref()) {
-                let message = format!("material `{rest}` again; it replaces the one at {before}");
+                let message =
+                    format!("material `{rest}` is defined again; it replaces the one at {before}");
                 out.warnings.push(place.clone().warning(message));
             }
             out.places.insert(rest.to_string(), place);
@@ -44,7 +45,8 @@ pub(crate) fn scan(text: &str, file: &Path, out: &mut MtlText) -> Result<(), Loa
             Ok(Meaning::Keep(value)) => emit(out, keyword, &value),
             Ok(Meaning::Silent) => {}
             Ok(Meaning::Ignored) => {
-                let message = format!("material `{name}`: `{keyword}` is not modelled; ignored");
+                let message =
+                    format!("material `{name}`: `{keyword}` is not supported and was ignored");
                 out.warnings.push(place.warning(message));
             }
             Err(message) => {

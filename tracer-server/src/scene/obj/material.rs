@@ -86,7 +86,7 @@ impl MtlEntry {
         match &self.emission_map {
             None => self.emission.unwrap_or(Rgb::BLACK),
             Some(Ok(mean)) => {
-                notes.push("map_Ke: emission textures are not modelled; its mean is used".into());
+                notes.push("map_Ke: emission textures are not supported; the mean is used".into());
                 // Exporters that write only the map mean it at full strength.
                 self.emission.filter(|ke| !ke.is_black()).unwrap_or(Rgb::WHITE) * *mean
             }
@@ -111,7 +111,8 @@ impl MtlEntry {
             return true;
         }
         if opacity < 1.0 {
-            notes.push(format!("partial transparency is not modelled; d {opacity} becomes opaque"));
+            notes
+                .push(format!("partial transparency is not supported; d {opacity} becomes opaque"));
         }
         false
     }
@@ -120,7 +121,9 @@ impl MtlEntry {
         let eta = match self.eta {
             Some(eta) if eta > 0.0 => eta,
             _ => {
-                notes.push(format!("transparent without an index of refraction Ni; {GLASS} used"));
+                notes.push(format!(
+                    "transparent without an index of refraction Ni; {GLASS} is used"
+                ));
                 GLASS
             }
         };
@@ -161,7 +164,8 @@ impl MtlEntry {
         let base_is_black = is_metal || diffuse.max_channel() < DARK_BASE * lobe.max_channel();
         if base_is_black && !is_metal && !diffuse.is_black() {
             let lost = show(diffuse);
-            notes.push(format!("Kd {lost} is lost beside such a reflection; left out"));
+            notes
+                .push(format!("Kd {lost} is negligible next to such a reflection and was ignored"));
         }
         let fresnel = match self.illumination {
             Some(3 | 8) => Fresnel::Constant(lobe),

@@ -36,7 +36,7 @@ pub(crate) struct ObjScene {
     pub(crate) meshes: Vec<Mesh>,
     /// The textures that its materials read.
     pub(crate) textures: Vec<Texture>,
-    /// What it asks for in vain.
+    /// What of it is not supported.
     pub(crate) warnings: Vec<Warning>,
 }
 
@@ -79,7 +79,7 @@ pub(crate) fn read(path: &Path) -> Result<ObjScene, LoadError> {
     Ok(scene)
 }
 
-/// Reads the surfaces of an OBJ file alone: whoever places them says what they are made of.
+/// Reads only the surfaces of an OBJ file: the scene that places them says what they are made of.
 pub(crate) fn read_geometry(path: &Path) -> Result<(Vec<Mesh>, Vec<Warning>), LoadError> {
     let text = read_lossy(path, MAX_OBJ_BYTES)?;
     let mut obj = text::scan(&text, path)?;
@@ -103,7 +103,7 @@ fn folder_of(path: &Path) -> PathBuf {
     path.parent().map(Path::to_path_buf).unwrap_or_default()
 }
 
-/// Reads all libraries into one text; those that are missing are told.
+/// Reads all libraries into one text; missing ones are reported.
 fn read_libraries(
     path: &Path,
     libraries: &[(String, usize)],

@@ -23,7 +23,7 @@ pub(crate) struct ObjText {
     pub(crate) libraries: Vec<(String, usize)>,
     /// The line where each material is first used.
     pub(crate) used: BTreeMap<String, usize>,
-    /// What the file asks for in vain.
+    /// What in the file is not supported.
     pub(crate) warnings: Vec<Warning>,
 }
 
@@ -132,7 +132,7 @@ impl Scan<'_> {
             return Ok(());
         }
         if count < wanted {
-            return Err(format!("{keyword} needs {wanted} numbers; here are {count}"));
+            return Err(format!("{keyword} needs {wanted} numbers; found {count}"));
         }
         let end = words_end(rest, wanted);
         self.emit(keyword, rest.get(..end).unwrap_or(rest));
@@ -156,8 +156,8 @@ impl Scan<'_> {
             4 => point /= w,
             _ => {
                 return Err(format!(
-                    "a vertex needs x, y and z, then nothing, a weight or a colour; here are \
-                     {count} numbers"
+                    "a vertex needs x, y and z, then nothing, a weight or a colour; found {count} \
+                    numbers"
                 ));
             }
         }
@@ -191,7 +191,7 @@ impl Scan<'_> {
         }
         self.out.text.push('\n');
         if corners < 3 {
-            return Err(format!("a face needs at least three corners; here are {corners}"));
+            return Err(format!("a face needs at least three corners; found {corners}"));
         }
         self.triangles += corners - 2;
         if self.triangles > MAX_TRIANGLES {
@@ -223,11 +223,11 @@ impl Scan<'_> {
         for (keyword, (line, count)) in &self.ignored {
             let what = match keyword.as_str() {
                 "l" | "p" => "lines and points have no area",
-                _ => "this statement is not modelled",
+                _ => "this statement is not supported",
             };
             self.out.warnings.push(
                 Place::line(self.file, *line)
-                    .warning(format!("`{}` ignored ({count} times): {what}", shorten(keyword))),
+                    .warning(format!("`{}` was ignored ({count} times): {what}", shorten(keyword))),
             );
         }
     }
@@ -306,9 +306,9 @@ mod tests {
             ("v 1 2", "2 numbers"),
             ("v 1 2 nan", "not a finite number"),
             ("v 1 2 inf", "not a finite number"),
-            ("v 1 2 1e300", "absurdly far"),
+            ("v 1 2 1e300", "too far away"),
             ("v 1 2 3 0", "weight"),
-            ("v 1 2 3 1e-300", "absurdly far"),
+            ("v 1 2 3 1e-300", "too far away"),
             ("v 1 2 3 4 5", "5 numbers"),
             ("v 1 2 3 4 5 6 7 8", "at most six"),
             ("v 1 2 three", "`three` is not a number"),

@@ -22,24 +22,24 @@ pub(crate) struct Read {
     pub(crate) description: SceneDescription,
     /// Where its parts were written.
     pub(crate) origins: Origins,
-    /// What it asks for in vain.
+    /// What of it is not supported.
     pub(crate) warnings: Vec<Warning>,
     /// What it asks of the mutation strategies.
     pub(crate) strategies: Vec<StrategySetting>,
 }
 
-/// One wish of a scene's author about a strategy.
+/// One setting of a strategy in a scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrategySetting {
     /// Where it stands.
     pub place: Place,
     /// Name of the strategy.
     pub strategy: String,
-    /// What is wished.
+    /// The setting.
     pub wish: Wish,
 }
 
-/// What is wished of a strategy.
+/// What a scene file sets of a strategy.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Wish {
     /// A weight; zero switches the strategy off.

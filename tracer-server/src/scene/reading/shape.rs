@@ -109,7 +109,7 @@ pub(crate) struct Rotation {
 }
 
 impl Rotation {
-    /// The turn as a matrix, or what is amiss.
+    /// The rotation as a matrix, or what is wrong.
     pub(crate) fn matrix(self) -> Result<DMat3, &'static str> {
         let axis = self.axis.try_normalize().filter(|_| self.degrees.is_finite());
         let axis =

@@ -72,7 +72,7 @@ pub(crate) fn read_json(path: &Path) -> Result<Viewpoint, LoadError> {
     let origin = DVec3::from_array(json.origin);
     let forward = DVec3::from_array(json.forward);
     let Some(forward) = forward.try_normalize() else {
-        return Err(Place::file(path).error("forward is zero; give the direction of view"));
+        return Err(Place::file(path).error("forward is zero; give the view direction"));
     };
     let aspect = f64::from(json.height) / f64::from(json.width);
     let tan_y = (0.5 * json.x_fov_deg.to_radians()).tan() * aspect;

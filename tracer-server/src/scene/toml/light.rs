@@ -81,7 +81,7 @@ struct EnvironmentEntry {
 }
 
 impl LightEntry {
-    /// The light, or the field that is amiss. Reads the image that it names, relative to `folder`.
+    /// The light, or the field that is wrong. Reads the image that it names, relative to `folder`.
     pub(crate) fn light(&self, folder: &Path) -> Result<LightDescription, Fault> {
         let kind = match (self.point, self.spot, self.directional, &self.environment) {
             (Some(point), None, None, None) => {

@@ -115,7 +115,7 @@ pub(crate) trait ReadTexture {
 }
 
 impl MaterialEntry {
-    /// The model with its parameters and what is not modelled of it, or the field that is amiss.
+    /// The model with its parameters and what of it is not supported, or the field that is wrong.
     pub(crate) fn bsdf(
         &self,
         textures: &mut impl ReadTexture,
@@ -123,7 +123,10 @@ impl MaterialEntry {
         let unknown = || {
             let known: Vec<&str> = MODELS.iter().map(|kind| kind.name).collect();
             let known = known.join(", ");
-            Fault::new("model", format!("there is no model `{}`; the models: {known}", self.model))
+            Fault::new(
+                "model",
+                format!("there is no model `{}`; the models are {known}", self.model),
+            )
         };
         let kind = MODELS.iter().find(|kind| kind.name == self.model).ok_or_else(unknown)?;
         self.refuse_strangers(kind)?;
@@ -178,10 +181,10 @@ impl<T: ReadTexture> Given for Entry<'_, T> {
             None => Ok(None),
             Some(Parameter::Color(color)) => Ok(Some((*color).into())),
             Some(Parameter::Texture(_)) => {
-                Err(self.error(name, "it reads no texture here: give a number or [r, g, b]"))
+                Err(self.error(name, "a texture is not possible here: give a number or [r, g, b]"))
             }
             Some(Parameter::Flag(_) | Parameter::Word(_)) => {
-                Err(self.error(name, "a number or [r, g, b] belongs here"))
+                Err(self.error(name, "expected a number or [r, g, b]"))
             }
         }
     }
@@ -200,13 +203,13 @@ impl<T: ReadTexture> Given for Entry<'_, T> {
             None => Ok(None),
             Some(Parameter::Color(Color::Grey(number))) => Ok(Some(*number)),
             Some(Parameter::Color(Color::Rgb(_))) => {
-                Err(self.error(name, "it is one number, the same for all colours"))
+                Err(self.error(name, "it must be a single number"))
             }
             Some(Parameter::Texture(_)) => {
-                Err(self.error(name, "it reads no texture here: give a number"))
+                Err(self.error(name, "a texture is not possible here: give a number"))
             }
             Some(Parameter::Flag(_) | Parameter::Word(_)) => {
-                Err(self.error(name, "a number belongs here"))
+                Err(self.error(name, "expected a number"))
             }
         }
     }
@@ -219,7 +222,9 @@ impl<T: ReadTexture> Given for Entry<'_, T> {
         let factor = match entry.factor {
             None => 1.0,
             Some(Color::Grey(factor)) => factor,
-            Some(Color::Rgb(_)) => return Err(self.error(name, "its factor is one number")),
+            Some(Color::Rgb(_)) => {
+                return Err(self.error(name, "its factor must be a single number"));
+            }
         };
         Ok(Some(NumberInput::Texture { texture, factor }))
     }
@@ -235,7 +240,7 @@ impl<T: ReadTexture> Given for Entry<'_, T> {
         match self.parameters.get(name) {
             None => Ok(None),
             Some(Parameter::Word(word)) => Ok(Some(word.clone())),
-            Some(_) => Err(self.error(name, "a word in quotes belongs here")),
+            Some(_) => Err(self.error(name, "expected a string in quotes")),
         }
     }
 
@@ -243,7 +248,7 @@ impl<T: ReadTexture> Given for Entry<'_, T> {
         match self.parameters.get(name) {
             None => Ok(false),
             Some(Parameter::Flag(flag)) => Ok(*flag),
-            Some(_) => Err(self.error(name, "true or false belongs here")),
+            Some(_) => Err(self.error(name, "expected true or false")),
         }
     }
 

@@ -205,7 +205,8 @@ impl Read {
         let name = &material.name;
         if let Some(before) = self.index_of(name) {
             let before = self.origins.of(Part::Material(before), "name");
-            let message = format!("material `{name}` was defined before, at {before}; rename one");
+            let message =
+                format!("material `{name}` is already defined at {before}; rename one of them");
             return Err(self.error(&place, "name", message));
         }
         let (bsdf, warnings) = material.bsdf(self).map_err(|Fault { field, message }| {
@@ -233,7 +234,7 @@ impl Read {
                 self.description.materials.iter().take(40).map(|m| m.name.as_str()).collect();
             let names =
                 if names.is_empty() { "none is defined".to_owned() } else { names.join(", ") };
-            let message = format!("there is no material `{name}`; the materials: {names}");
+            let message = format!("there is no material `{name}`; the materials are {names}");
             return Err(self.error(place, "material", message));
         };
         u16::try_from(index)
@@ -396,7 +397,7 @@ impl MeshEntry {
                 if cuboid.min.cmplt(cuboid.max).all() {
                     Ok(Given::Inline(cuboid.surface()))
                 } else {
-                    Err("each coordinate of the box's min must be below that of max")
+                    Err("each coordinate of the box's min must be less than that of max")
                 }
             }
             (None, None, Some(positions), Some(triangles), None) => {

@@ -33,7 +33,7 @@ pub(crate) enum Values {
     Sizes([f64; 2]),
 }
 
-/// The wishes in a file's `[strategies]`, with their places.
+/// The settings in a file's `[strategies]`, with their places.
 pub(crate) fn settings(table: &StrategyTable, text: &str, file: &Path) -> Vec<StrategySetting> {
     let mut settings = Vec::new();
     for (name, entry) in table {

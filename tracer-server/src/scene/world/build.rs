@@ -220,11 +220,11 @@ fn gather_triangles(
         objects.push(FilterObject { name: mesh.name.clone(), primitives });
     }
     if degenerate > 0 {
-        warnings.push(format!("{degenerate} triangles without area were left out"));
+        warnings.push(format!("{degenerate} triangles without area were ignored"));
     }
     if repeated > 0 {
         warnings.push(format!(
-            "{repeated} light triangles were left out: there is one in the same place already"
+            "{repeated} light triangles were ignored: each has another one in the same place"
         ));
     }
     Ok((triangles, materials, corners))

@@ -58,10 +58,10 @@ impl SceneFeatures {
     pub fn present(self) -> Vec<&'static str> {
         let mut present = Vec::new();
         if self.specular {
-            present.push("mirrors or glass: chains keep specular chains of events");
+            present.push("mirrors or glass: mutations keep specular chains of events");
         }
         if self.spheres {
-            present.push("analytic spheres: a second hierarchy is searched for exact spheres");
+            present.push("analytic spheres: a second hierarchy is traversed for exact spheres");
         }
         if self.shading_normals {
             present.push("shading normals: walks from the light carry adjoint factors");
@@ -70,13 +70,13 @@ impl SceneFeatures {
             present.push("textures: colour or roughness varies over surfaces");
         }
         if self.one_sided {
-            present.push("one-sided surfaces: black on their back");
+            present.push("one-sided surfaces: their backs are black");
         }
         if self.environment {
             present.push("environment: a ray that leaves the scene meets light");
         }
         if self.aperture {
-            present.push("aperture: chains move the lens point too");
+            present.push("aperture: mutations move the lens point, too");
         }
         present
     }
@@ -88,14 +88,15 @@ impl SceneFeatures {
             off.push("no mirror or glass: every vertex can be connected, and the multi-chain perturbation is off");
         }
         if !self.spheres {
-            off.push("no analytic sphere: the sphere tree is never searched");
+            off.push("no analytic sphere: the sphere hierarchy is never traversed");
         }
         if !self.environment {
             off.push("no environment: a ray that leaves the scene is lost");
         }
         if !self.hittable {
             off.push(
-                "no light with a surface: paths from the eye never end on a light, and what only mirrors or glass could show of a lamp is missing",
+                "no light with a surface: paths from the eye never end on a light, and lamps seen \
+                only through mirrors or glass are missing",
             );
         }
         if !self.aperture {

@@ -73,7 +73,7 @@ struct SurfaceMaterial {
     name: String,
     /// Its model; with the mean of a texture.
     bsdf: Bsdf,
-    /// What it is built of anew at every point, where it reads textures.
+    /// What it is rebuilt from at every point, if it reads textures.
     textured: Option<BsdfDescription>,
     /// True when its back is black.
     one_sided: bool,

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context as _, ensure};
 use host::file::Place;
 
-use super::Stage;
+use super::OffscreenWindow;
 use crate::app::Viewer;
 use crate::app::desktop::Connect;
 use crate::app::failed::Failed;
@@ -43,7 +43,7 @@ pub struct Job<'a> {
     pub wait: Wait,
     /// Where the picture goes, as PNG.
     pub file: &'a Path,
-    /// What to do besides, in this order.
+    /// What else to do, in this order.
     pub commands: Vec<Command>,
 }
 
@@ -57,9 +57,13 @@ pub struct Job<'a> {
 pub fn run(mut viewer: Viewer, peer: Option<Peer>, job: Job<'_>) -> anyhow::Result<()> {
     let Job { size, wait, file, commands } = job;
     let is_png = file.extension().is_some_and(|end| end.eq_ignore_ascii_case("png"));
-    ensure!(is_png, "{}: the picture is a PNG; end its name in .png", file.display());
+    ensure!(
+        is_png,
+        "{}: the screenshot is written as PNG; use a name that ends in .png",
+        file.display()
+    );
     let place = Place::find(file)?;
-    let mut stage = Stage::new(size)?;
+    let mut offscreen = OffscreenWindow::new(size)?;
     let connect: Connect = Box::new(|peer| Link::start(peer, Box::new(|_| {})));
     let link = peer.map(&connect).transpose()?;
     viewer.adopt(Preferences::default(), connect);
@@ -73,12 +77,13 @@ pub fn run(mut viewer: Viewer, peer: Option<Peer>, job: Job<'_>) -> anyhow::Resu
         wait_for(&mut viewer, wait)?;
     }
     viewer.hold_back(false);
-    finish_script(&mut stage, &mut viewer)?;
-    let image = stage.settled(&mut viewer)?;
+    let followed = finish_script(&mut offscreen, &mut viewer);
+    let image = offscreen.settled(&mut viewer)?;
     place.write(|output| {
         let written = image.write_to(output, image::ImageFormat::Png);
         written.with_context(|| format!("cannot write {}", file.display()))
     })?;
+    followed?;
     let failures = viewer.take_failures();
     if failures.is_empty() { Ok(()) } else { Err(Failed(failures.join("\n")).into()) }
 }
@@ -128,7 +133,7 @@ fn what_is_missing(viewer: &Viewer) -> String {
 }
 
 /// Follows what is left of the script, as a window would that is drawn all the time.
-fn finish_script(stage: &mut Stage, viewer: &mut Viewer) -> anyhow::Result<()> {
+fn finish_script(offscreen: &mut OffscreenWindow, viewer: &mut Viewer) -> anyhow::Result<()> {
     let mut progress = (Instant::now(), viewer.commands_left());
     while !viewer.is_idle() && !viewer.is_closing() {
         // What is given away is all of one moment, unless a command needs more than there is.
@@ -137,16 +142,16 @@ fn finish_script(stage: &mut Stage, viewer: &mut Viewer) -> anyhow::Result<()> {
         } else {
             viewer.work_on();
         }
-        stage.frame(viewer)?;
-        stage.give_pictures(viewer)?;
-        print(&stage.take_copied())?;
+        offscreen.frame(viewer)?;
+        offscreen.give_pictures(viewer)?;
+        print(&offscreen.take_copied())?;
         let left = viewer.commands_left();
         if left != progress.1 {
             progress = (Instant::now(), left);
         }
         if progress.0.elapsed() > PATIENCE {
             let next = viewer.next_command().map_or_else(String::new, |next| format!("`{next}`"));
-            let problem = format!("{next} waits in vain for what it needs");
+            let problem = format!("`{next}` waits for something that will not arrive");
             return Err(Failed(problem).into());
         }
         thread::sleep(LOOK);

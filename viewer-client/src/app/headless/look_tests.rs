@@ -6,8 +6,8 @@ use common::{
 };
 use image::RgbaImage;
 
-use super::tests::{COLUMN, SIZE, picture_of, rows_that_differ, stage};
-use crate::synthetic::Delivery;
+use super::tests::{COLUMN, SIZE, offscreen, picture_of, rows_that_differ};
+use crate::synthetic::SyntheticSession;
 use crate::synthetic::{camera, delivery};
 use crate::value::{Blend, ColorMode};
 
@@ -32,8 +32,8 @@ fn batch(paths: &[(PathHeader, f32, f32)]) -> PathBatch {
     builder.finish().expect("a batch with paths")
 }
 
-fn of(batch: PathBatch) -> Delivery {
-    Delivery { batches: vec![batch], ..delivery(&[&[[0.0; 3]]]) }
+fn of(batch: PathBatch) -> SyntheticSession {
+    SyntheticSession { batches: vec![batch], ..delivery(&[&[[0.0; 3]]]) }
 }
 
 const LOOK: [&str; 4] =
@@ -54,7 +54,7 @@ fn mean(image: &RgbaImage, [x, y]: [u32; 2]) -> [f64; 3] {
 
 #[test]
 fn each_ramp_shows_its_own_number() {
-    let Some(mut stage) = stage() else { return };
+    let Some(mut offscreen) = offscreen() else { return };
     let plain = PathHeader { luminance: 1.0, rgb: [1.0; 3], dwell: 1, ..PathHeader::default() };
     let mut row = None;
     for mode in
@@ -68,14 +68,15 @@ fn each_ramp_shows_its_own_number() {
         let throughput = if mode == ColorMode::Throughput { 1.0 } else { 0.01 };
         let color = format!("cloud color {mode}");
         let look = with(&[&color, "cloud scale log"]);
-        let low = picture_of(&mut stage, of(batch(&[(plain, 150.0, 0.01)])), &look);
-        let high = picture_of(&mut stage, of(batch(&[(other, 150.0, throughput)])), &look);
+        let low = picture_of(&mut offscreen, of(batch(&[(plain, 150.0, 0.01)])), &look);
+        let high = picture_of(&mut offscreen, of(batch(&[(other, 150.0, throughput)])), &look);
         let differ = rows_that_differ(&low, &high);
         assert_eq!(differ.is_empty(), mode == ColorMode::Constant, "{mode}: {differ:?}");
         if mode == ColorMode::Throughput {
             row = differ.get(differ.len() / 2).copied();
             let linear = with(&[&color, "cloud scale linear"]);
-            let low_linear = picture_of(&mut stage, of(batch(&[(plain, 150.0, 0.01)])), &linear);
+            let low_linear =
+                picture_of(&mut offscreen, of(batch(&[(plain, 150.0, 0.01)])), &linear);
             assert!(!rows_that_differ(&low, &low_linear).is_empty(), "the scale counts");
         }
     }
@@ -84,7 +85,7 @@ fn each_ramp_shows_its_own_number() {
 
 #[test]
 fn some_blendings_ask_for_no_order() {
-    let Some(mut stage) = stage() else { return };
+    let Some(mut offscreen) = offscreen() else { return };
     // Two strategies, so two colours, in one place.
     let path = |strategy, nearer: f32| {
         let header = PathHeader { strategy: StrategyId(strategy), ..PathHeader::default() };
@@ -96,23 +97,23 @@ fn some_blendings_ask_for_no_order() {
         // On dark ground the newest one glows, which leaves little of its order.
         let theme = if blend == Blend::Add { "theme dark" } else { "theme light" };
         let look = with(&[&text, "cloud color strategy", "cloud opacity 0.8", theme]);
-        let one = picture_of(&mut stage, of(batch(&[a, b])), &look);
-        let other = picture_of(&mut stage, of(batch(&[b, a])), &look);
+        let one = picture_of(&mut offscreen, of(batch(&[a, b])), &look);
+        let other = picture_of(&mut offscreen, of(batch(&[b, a])), &look);
         let differ = rows_that_differ(&one, &other);
         assert_eq!(differ.is_empty(), blend != Blend::Newest, "{blend}: {differ:?}");
-        let none = picture_of(&mut stage, of(batch(&[a])), &with(&["cloud shown 0", theme]));
+        let none = picture_of(&mut offscreen, of(batch(&[a])), &with(&["cloud shown 0", theme]));
         assert!(!rows_that_differ(&one, &none).is_empty(), "{blend}: they are seen");
     }
 }
 
 #[test]
 fn distance_filter_and_marks_thin_paths_out() {
-    let Some(mut stage) = stage() else { return };
+    let Some(mut offscreen) = offscreen() else { return };
     let path = (PathHeader { luminance: 1.0, rgb: [1.0; 3], ..PathHeader::default() }, 150.0, 1.0);
     let mut brightness = |more: &[&str]| {
         let look = with(&["cloud color constant"]);
         let look: Vec<_> = look.into_iter().chain(more.iter().copied()).collect();
-        let image = picture_of(&mut stage, of(batch(&[path])), &look);
+        let image = picture_of(&mut offscreen, of(batch(&[path])), &look);
         let column = 200..SIZE[1] / 2;
         column.map(|y| u32::from(image.get_pixel(COLUMN, y)[2])).max().unwrap_or(0)
     };
@@ -130,8 +131,8 @@ fn distance_filter_and_marks_thin_paths_out() {
 }
 
 /// The wall with a texture: red to the left, green to the right.
-fn painted() -> Delivery {
-    let mut delivery = Delivery { batches: Vec::new(), ..delivery(&[&[[0.0; 3]]]) };
+fn painted() -> SyntheticSession {
+    let mut delivery = SyntheticSession { batches: Vec::new(), ..delivery(&[&[[0.0; 3]]]) };
     let mesh = &mut delivery.scene.mesh;
     mesh.texcoords = mesh.positions.iter().map(|p| [p[0] / 1024.0 + 0.5, 0.5]).collect();
     let texels = vec![[160, 0, 0], [160, 0, 0], [0, 160, 0], [0, 160, 0]];
@@ -145,9 +146,9 @@ const RIGHT: u32 = 660;
 
 #[test]
 fn textures_are_shaded_or_shown_as_they_are() {
-    let Some(mut stage) = stage() else { return };
+    let Some(mut offscreen) = offscreen() else { return };
     let mut halves = |commands: &[&str]| {
-        let image = picture_of(&mut stage, painted(), commands);
+        let image = picture_of(&mut offscreen, painted(), commands);
         [COLUMN, RIGHT].map(|x| mean(&image, [x, 300]))
     };
     let [left, right] = halves(&["scene shading texture"]);
@@ -163,11 +164,11 @@ fn textures_are_shaded_or_shown_as_they_are() {
 
 #[test]
 fn the_light_shines_from_where_it_stands() {
-    let Some(mut stage) = stage() else { return };
+    let Some(mut offscreen) = offscreen() else { return };
     for lighting in ["scene lighting soft", "scene lighting phong"] {
         let mut halves = |light: &str| {
             let look = ["scene shading plain", lighting, light];
-            let image = picture_of(&mut stage, painted(), &look);
+            let image = picture_of(&mut offscreen, painted(), &look);
             [COLUMN, RIGHT].map(|x| mean(&image, [x, 330])[1])
         };
         let [left, right] = halves("scene light at -300 0 -450");

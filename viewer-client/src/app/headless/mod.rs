@@ -34,40 +34,40 @@ async fn graphics(backends: wgpu::Backends) -> Result<RenderState, egui_wgpu::Wg
 /// How long a frame took.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrameCost {
-    /// Until everything was told to the graphics card, but for what stands in for it.
+    /// Until all commands were submitted to the graphics card, excluding work done in its place.
     pub cpu: Duration,
-    /// Until the picture was done.
+    /// Until the picture was finished.
     pub wall: Duration,
 }
 
-/// An egui context and a graphics card without a window.
-pub struct Stage {
+/// An egui context and a graphics card that draw without a window on screen.
+pub struct OffscreenWindow {
     ctx: egui::Context,
     gpu: RenderState,
     size: [u32; 2],
     target: wgpu::Texture,
     time: f64,
-    /// When the interface wants another frame by itself.
+    /// When the interface wants another frame without input.
     due: Option<Instant>,
-    /// Texts for the clipboard that there is not.
+    /// Text that would go to the clipboard, if there were one.
     copied: Vec<String>,
-    /// Who waits for a picture of the window.
+    /// Callers waiting for a screenshot.
     waiting: Vec<egui::ScreenshotCallback>,
 }
 
-impl std::fmt::Debug for Stage {
+impl std::fmt::Debug for OffscreenWindow {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Stage").field("size", &self.size).finish_non_exhaustive()
+        f.debug_struct("OffscreenWindow").field("size", &self.size).finish_non_exhaustive()
     }
 }
 
-impl Stage {
-    /// A stage of `size` pixels for pictures to keep.
+impl OffscreenWindow {
+    /// A window of `size` pixels for pictures to keep.
     pub fn new(size: [u32; 2]) -> anyhow::Result<Self> {
         Self::with(size, |_| Quality::Smooth)
     }
 
-    /// A stage of `size` pixels that draws as well as a window would.
+    /// A window of `size` pixels that draws with the quality of a real one.
     pub fn like_a_window(size: [u32; 2]) -> anyhow::Result<Self> {
         Self::with(size, window::quality)
     }
@@ -80,7 +80,8 @@ impl Stage {
             .block_on(graphics(wgpu::Backends::PRIMARY))
             .or_else(|_| runtime.block_on(graphics(wgpu::Backends::GL)));
         window::told_by_drivers(&quiet.end());
-        let gpu = gpu.context("no graphics driver; on Debian, install mesa-vulkan-drivers")?;
+        let gpu =
+            gpu.context("no graphics driver was found; on Debian, install mesa-vulkan-drivers")?;
         let size = within(size, &gpu);
         let ctx = egui::Context::default();
         Viewer::install(&ctx, &gpu, quality(&gpu));
@@ -136,7 +137,7 @@ impl Stage {
             // What was written waits in memory until it is submitted.
             self.gpu.queue.submit([]);
             let done = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
-            done.context("the graphics driver gave up")?;
+            done.context("the graphics driver stopped responding")?;
         }
         let pixels = egui::vec2(self.size[0] as f32, self.size[1] as f32);
         let screen = pixels / self.ctx.zoom_factor();
@@ -155,7 +156,7 @@ impl Stage {
         let cpu = started.elapsed().saturating_sub(self.take_drawing_time());
         self.gpu.queue.submit(commands);
         let done = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
-        done.context("the graphics driver gave up")?;
+        done.context("the graphics driver stopped responding")?;
         let cost = FrameCost { cpu, wall: started.elapsed() };
         tracing::debug!("a frame took {:.0} ms", 1e3 * cost.wall.as_secs_f64());
         Ok(cost)
@@ -270,7 +271,7 @@ fn within(size: [u32; 2], gpu: &RenderState) -> [u32; 2] {
     let most = gpu.device.limits().max_texture_dimension_2d;
     let [width, height] = size.map(|side| side.min(most));
     if [width, height] != size {
-        tracing::warn!("the graphics card draws no more than {width} x {height} pixels of these");
+        tracing::warn!("the graphics card can only draw {width} x {height} of these pixels");
     }
     [width, height]
 }

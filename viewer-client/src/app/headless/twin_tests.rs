@@ -8,9 +8,9 @@ use image::RgbaImage;
 use rand_core::{Rng as _, SeedableRng as _};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::tests::{SIZE, picture_of, stage};
+use super::tests::{SIZE, offscreen, picture_of};
 use super::*;
-use crate::synthetic::Delivery;
+use crate::synthetic::SyntheticSession;
 use crate::synthetic::{camera, delivery};
 use crate::value::ColorMode;
 
@@ -50,8 +50,8 @@ fn batch() -> PathBatch {
     builder.finish().expect("a batch with paths")
 }
 
-fn of(batch: PathBatch) -> Delivery {
-    Delivery { batches: vec![batch], ..delivery(&[&[[0.0; 3]]]) }
+fn of(batch: PathBatch) -> SyntheticSession {
+    SyntheticSession { batches: vec![batch], ..delivery(&[&[[0.0; 3]]]) }
 }
 
 /// How much brighter one picture is than another.
@@ -73,11 +73,13 @@ fn difference(a: &RgbaImage, b: &RgbaImage) -> (i64, usize) {
 
 #[test]
 fn card_and_processor_draw_the_same_picture() {
-    if stage().is_none() {
+    if offscreen().is_none() {
         return;
     }
-    let mut card = Stage::with(SIZE, |_| Quality::Plain).expect("a stage like the other");
-    let mut processor = Stage::with(SIZE, |_| Quality::Fast).expect("a stage like the other");
+    let mut card =
+        OffscreenWindow::with(SIZE, |_| Quality::Plain).expect("a window like the other");
+    let mut processor =
+        OffscreenWindow::with(SIZE, |_| Quality::Fast).expect("a window like the other");
     let looks: [&[&str]; 16] = [
         &["cloud width 1"],
         &["cloud width 6", "cloud hidden 1"],

@@ -38,7 +38,7 @@ pub(super) fn read(file: &Path) -> io::Result<Content> {
     let bytes = fs::read(file)?;
     Ok(match serde_json::from_slice(&bytes) {
         Ok(Value::Object(object)) => Content::Object(Value::Object(object)),
-        Ok(_) => Content::Damaged("it holds no object".to_owned()),
+        Ok(_) => Content::Damaged("it is not a JSON object".to_owned()),
         Err(error) => Content::Damaged(error.to_string()),
     })
 }

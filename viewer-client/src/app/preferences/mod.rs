@@ -107,8 +107,8 @@ impl Preferences {
             Ok(Content::Nothing) => first,
             Ok(Content::Damaged(reason)) => {
                 complaints.push(format!(
-                    "{reason}. The usual settings are used; mend the file and start again, or it is \
-                     kept aside with the ending .damaged as soon as a setting changes"
+                    "{reason}. Default settings are used. Fix the file and start again; otherwise \
+                    it is renamed to end in .damaged as soon as a setting changes"
                 ));
                 Self::default()
             }
@@ -194,7 +194,7 @@ fn worth_it(commands: Vec<Command>) -> impl Iterator<Item = (&'static str, Comma
     kept.filter(|(form, _)| form.is(Trait::Kept)).map(|(form, command)| (form.words, command))
 }
 
-/// The entries of the map `key`; those that make no sense are told and left out.
+/// The entries of the map `key`; invalid ones are reported and left out.
 fn entries<T: DeserializeOwned>(
     content: &Value,
     key: &str,
@@ -216,7 +216,7 @@ fn entries<T: DeserializeOwned>(
     read.collect()
 }
 
-/// What `T` makes of an object, but for keys whose values make no sense, which are told.
+/// What `T` reads from an object, except for keys with invalid values, which are reported.
 fn by_key<T: Default + DeserializeOwned + Serialize>(
     object: &Value,
     place: &str,
@@ -295,9 +295,9 @@ impl Keeper {
         self.problem = match &written {
             Ok(None) => None,
             Ok(Some(place)) => {
-                Some(format!("{name} was damaged, and is kept as {}", place.display()))
+                Some(format!("{name} was damaged, and has been kept as {}", place.display()))
             }
-            Err(error) => Some(format!("settings are not kept in {name}: {error}")),
+            Err(error) => Some(format!("settings cannot be saved in {name}: {error}")),
         };
         if let Some(problem) = &self.problem {
             tracing::warn!("{problem}");

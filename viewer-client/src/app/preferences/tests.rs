@@ -279,5 +279,5 @@ fn a_file_that_cannot_be_written_stays() {
     keeper.finish(after(&read, &["theme light"]));
     assert!(file.is_dir(), "as it was");
     let problem = keeper.problem().expect("it is told");
-    assert!(problem.contains("settings are not kept in"), "{problem}");
+    assert!(problem.contains("settings cannot be saved in"), "{problem}");
 }

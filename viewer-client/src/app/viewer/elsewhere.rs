@@ -8,7 +8,7 @@ use crate::app::share;
 use crate::command::{DesktopCommand, HOME};
 use crate::panel;
 use crate::source::connection::Peer;
-use crate::source::dump::{self, Stage};
+use crate::source::dump::{self, PlayableDump};
 use crate::source::{Origin, Source, file};
 
 impl Viewer {
@@ -32,7 +32,7 @@ impl Viewer {
                 let seen = self.source.suited(&self.settings);
                 let text = panel::text_of(&self.world(&seen), part);
                 self.say(if text.trim().is_empty() {
-                    Err("There is nothing to copy here yet.".to_owned())
+                    Err("There is nothing to copy yet.".to_owned())
                 } else {
                     Ok(format!("Copied {} lines.", text.lines().count()))
                 });
@@ -53,8 +53,7 @@ impl Viewer {
             }
             Origin::Daemon(_) => Ok("Copied a link to this view.".to_owned()),
             Origin::Nothing | Origin::File(_) => {
-                Err("A link leads to a daemon, and none is watched; connect to one first."
-                    .to_owned())
+                Err("A link needs a daemon; connect to one first.".to_owned())
             }
         };
         if said.is_ok() {
@@ -71,12 +70,13 @@ impl Viewer {
             let shared = share::read(place).map_err(|error| error.to_string())?;
             (shared.address, shared.commands)
         } else if place == HOME {
-            let none = "There is no daemon inside this program: it was told to watch another.";
+            let none = "This program has no built-in daemon, because it was started with the \
+                address of another one.";
             (self.desktop.home.clone().ok_or(none)?, Vec::new())
         } else {
             (place.to_owned(), Vec::new())
         };
-        let connect = self.desktop.connect.as_ref().ok_or("There is no window to connect for.")?;
+        let connect = self.desktop.connect.as_ref().ok_or("Connecting needs a window.")?;
         let link = connect(Peer::open(address.clone()))
             .map_err(|error| format!("Cannot connect to {address}: {error}"))?;
         let embedded = self.desktop.home.as_ref() == Some(&address);
@@ -89,6 +89,6 @@ impl Viewer {
 /// Reads a file of paths, without the surfaces of a scene.
 fn open(file: &Path) -> Outcome {
     let read = dump::read(file).map_err(|error| error.to_string())?;
-    let stage = Box::new(Stage::new(read, None));
-    Ok(TaskResult::Opened { name: file::name_of(file), stage })
+    let playable = Box::new(PlayableDump::new(read, None));
+    Ok(TaskResult::Opened { name: file::name_of(file), playable })
 }

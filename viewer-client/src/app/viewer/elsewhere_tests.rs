@@ -12,9 +12,9 @@ use egui_kittest::kittest::NodeT as _;
 
 use super::*;
 use crate::imaging::Reference;
-use crate::source::dump::tests::stage;
+use crate::source::dump::tests::playable;
 use crate::source::selection::Selection;
-use crate::synthetic::{Delivery, delivery};
+use crate::synthetic::{SyntheticSession, delivery};
 use crate::value::{PanelName, Part};
 
 const PATH: &[[f32; 3]] = &[[-400.0, 150.0, -400.0], [400.0, 150.0, -400.0]];
@@ -39,13 +39,13 @@ impl Place {
             Self::BuiltIn => Source::daemon("127.0.0.1:50001".to_owned(), true),
             Self::Remote => Source::daemon("box:50061".to_owned(), false),
             Self::OtherScene => Source::daemon("other:50061".to_owned(), false),
-            Self::File => Source::file("paths.txt", stage()),
+            Self::File => Source::file("paths.txt", playable()),
             Self::Nothing => Source::nothing(),
         }
     }
 
     /// What comes there.
-    fn delivery(self) -> Option<Delivery> {
+    fn delivery(self) -> Option<SyntheticSession> {
         match self {
             Self::BuiltIn | Self::Remote => Some(session(delivery(&[PATH, PATH]))),
             Self::OtherScene => Some(session(other_scene())),
@@ -55,7 +55,7 @@ impl Place {
 }
 
 /// A session in which this viewer drives and an explorer walks.
-fn session(delivery: Delivery) -> Delivery {
+fn session(delivery: SyntheticSession) -> SyntheticSession {
     let header = PathHeader { id: PathId::default(), ..PathHeader::default() };
     let batch = crate::synthetic::batch(&[PATH]);
     let vertices = batch.reader().next().map(|path| path.vertices.to_vec()).unwrap_or_default();
@@ -73,12 +73,12 @@ fn session(delivery: Delivery) -> Delivery {
         TracerEvent::FocusPath(Arc::new(FocusPath { header, vertices, next: 1 })),
         TracerEvent::ExplorerFilm(delivery.film.clone()),
     ];
-    Delivery { more, ..delivery }
+    SyntheticSession { more, ..delivery }
 }
 
-fn other_scene() -> Delivery {
+fn other_scene() -> SyntheticSession {
     let mut delivery = delivery(&[PATH]);
-    let Delivery { welcome, scene, .. } = &mut delivery;
+    let SyntheticSession { welcome, scene, .. } = &mut delivery;
     "another".clone_into(&mut welcome.scene_hash);
     "another room".clone_into(&mut welcome.scene_name);
     welcome.strategies = vec!["caustic".to_owned()];

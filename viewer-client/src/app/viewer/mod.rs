@@ -156,7 +156,7 @@ impl Viewer {
         &self.source.status
     }
 
-    /// What went wrong since this was asked last: for whoever has no window to read it in.
+    /// What went wrong since the last call, for use without a window.
     pub fn take_failures(&mut self) -> Vec<String> {
         self.source.status.take_failures()
     }
@@ -311,15 +311,15 @@ impl Viewer {
                 let image = (of == shown.serial()).then_some(&mut shown.image)?;
                 image.finish(finding, &mut self.settings.image)
             }
-            Ok(TaskResult::Opened { name, stage }) => {
-                self.look_at(Source::file(&name, *stage));
+            Ok(TaskResult::Opened { name, playable }) => {
+                self.look_at(Source::file(&name, *playable));
                 None
             }
             Err(problem) => Some(Err(problem)),
         }
     }
 
-    /// Shows the others where this viewer looks, if the user wishes.
+    /// Shows the others where this viewer looks, if the user shares that.
     fn appear(&mut self) {
         let Self { settings, source: Source { origin, status, shown, .. }, .. } = self;
         let Origin::Daemon(daemon) = origin else { return };
@@ -349,8 +349,8 @@ impl Viewer {
         let Source { origin, status, .. } = &mut self.source;
         let problem = match origin {
             Origin::File(_) => {
-                "A file of paths has no daemon whose chains could be steered or explored; open the \
-                 scene itself with `viewer-client --scene SCENE`."
+                "A file of paths has no daemon with chains to steer or explore; open the scene \
+                itself with `viewer-client --scene SCENE`."
             }
             Origin::Nothing => "There is no daemon to steer; connect to one first.",
             Origin::Daemon(daemon) => {
@@ -359,7 +359,7 @@ impl Viewer {
                     status.steering.focus.scrub = None;
                 }
                 if !daemon.order(order) {
-                    let problem = "not sent: there is no connection".to_owned();
+                    let problem = "it was not sent, because there is no connection".to_owned();
                     status.steering.remark(Err(problem));
                 }
                 return;

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use common::{DetailReply, FilterReply, Notice, PathDetail, PathId, TracerEvent, VertexDetail};
 
 use super::*;
-use crate::source::dump::Stage;
-use crate::source::dump::tests::{STEPS, stage};
+use crate::source::dump::PlayableDump;
+use crate::source::dump::tests::{STEPS, playable};
 use crate::source::playback::Playback;
 use crate::source::selection::{Detail, Selection};
-use crate::synthetic::{Delivery, delivery};
+use crate::synthetic::{SyntheticSession, delivery};
 
 /// A viewer of a daemon that nobody has connected to yet.
 fn daemon() -> Viewer {
@@ -17,7 +17,7 @@ fn daemon() -> Viewer {
 }
 
 /// Takes in what has come.
-fn take_in(viewer: &mut Viewer, delivery: Delivery) {
+fn take_in(viewer: &mut Viewer, delivery: SyntheticSession) {
     delivery.put(viewer.inbox().expect("a daemon"));
     viewer.receive();
 }
@@ -29,14 +29,14 @@ fn hear(viewer: &mut Viewer, event: TracerEvent) {
 }
 
 /// A viewer of a file of paths.
-fn file(stage: Stage) -> Viewer {
-    Viewer::new(Source::file("paths.txt", stage))
+fn file(playable: PlayableDump) -> Viewer {
+    Viewer::new(Source::file("paths.txt", playable))
 }
 
 #[test]
 fn what_was_left_out_and_cannot_be_done_is_said() {
     let warnings = ["the last record has no end", "two more"].map(str::to_owned).into();
-    let mut viewer = file(Stage { warnings, ..stage() });
+    let mut viewer = file(PlayableDump { warnings, ..playable() });
     let said = |viewer: &Viewer| viewer.status().notice.clone().map(|notice| notice.text);
     let expected = "In paths.txt, the last record has no end (1 more in the Playback panel)";
     assert_eq!(said(&viewer).as_deref(), Some(expected), "in the window");
@@ -54,9 +54,9 @@ fn what_was_left_out_and_cannot_be_done_is_said() {
 
 #[test]
 fn all_of_a_file_is_in_the_picture() {
-    let stage = stage();
-    let lens = glam::Vec3::from(stage.acts[0].vertices[2].position);
-    let viewer = file(stage);
+    let playable = playable();
+    let lens = glam::Vec3::from(playable.paths[0].vertices[2].position);
+    let viewer = file(playable);
     let bounds = viewer.bounds().expect("a scene");
     let is_within = lens.cmpge(bounds.min).all() && lens.cmple(bounds.max).all();
     assert!(is_within, "the lens at {lens} lies outside of {bounds:?}");
@@ -64,7 +64,7 @@ fn all_of_a_file_is_in_the_picture() {
 
 #[test]
 fn a_file_is_shown_played_and_picked() {
-    let mut viewer = file(stage());
+    let mut viewer = file(playable());
     let mut run = |command: &str| {
         viewer.apply(command.parse().expect("a command"));
         (viewer.source.shown.store.len(), viewer.source.playback().map(Playback::place))
@@ -125,7 +125,7 @@ fn what_is_held_is_judged_by_the_filter() {
 
 #[test]
 fn a_file_of_paths_is_filtered_and_counted() {
-    let mut viewer = file(stage());
+    let mut viewer = file(playable());
     let mut run = |command: &str| {
         viewer.apply(command.parse().expect("a command"));
         viewer.source.shown.counted.as_ref().map(|c| (c.matched, c.seen, c.energy_share))
@@ -161,7 +161,7 @@ fn numbers_are_kept_with_the_path_that_they_are_about() {
         reciprocals: vec![1.0; count],
     };
     let other = PathId { step: 99, ..PathId::default() };
-    assert!(matches!(told(other, Ok(numbers(3))), Some(Detail::Missing(_))), "of another path");
+    assert!(matches!(told(other, Ok(numbers(3))), Some(Detail::Missing(_))), "for another path");
     let known = told(PathId::default(), Ok(numbers(3)));
     assert_eq!(known, Some(Detail::Known(Arc::new(numbers(3)))), "its own");
     let odd = told(PathId::default(), Ok(numbers(4)));

@@ -17,7 +17,7 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// Asks for the numbers behind a path, prints them, and leaves. That the path is gone is an error.
 pub(super) async fn print(mut session: Session, path: PathId, json: bool) -> anyhow::Result<()> {
     if !session.say(ViewerEvent::Inspect(path)) {
-        bail!("the daemon does not listen to questions");
+        bail!("the daemon does not accept requests");
     }
     let answer = async {
         loop {

@@ -43,7 +43,7 @@ async fn watch(args: &WatchArgs) -> anyhow::Result<()> {
         if let Some(order) = script.next()
             && !session.say(order)
         {
-            bail!("the daemon does not listen to orders");
+            bail!("the daemon does not accept orders");
         }
         let event = tokio::select! {
             event = session.next() => event?,
@@ -126,7 +126,7 @@ impl Names {
             TracerEvent::FocusGap(steps) => Some(if json {
                 json!({ "event": "focus gap", "steps": steps }).to_string()
             } else {
-                format!("gap  {steps} steps are missing")
+                format!("gap  {steps} steps were dropped")
             }),
             TracerEvent::Notice(_) if !self.focus => None,
             TracerEvent::Notice(notice) if json => Some(focus::notice_json(notice).to_string()),

@@ -35,14 +35,14 @@ pub(super) enum Draws {
 
 /// Where the points of a page are.
 #[derive(Debug)]
-enum Room {
+enum Storage {
     Card(wgpu::Buffer),
     Processor(Vec<LinePoint>),
 }
 
 #[derive(Debug)]
 struct Page {
-    room: Room,
+    storage: Storage,
     points: usize,
     uploaded: Uploaded,
 }
@@ -52,8 +52,8 @@ struct Page {
 pub(super) struct Pages {
     draws: Draws,
     held: BTreeMap<u64, Page>,
-    /// Room of pages that are gone, for the next ones.
-    spare: Vec<Room>,
+    /// Storage of pages that are gone, for the next ones.
+    spare: Vec<Storage>,
     page_points: usize,
 }
 
@@ -81,8 +81,8 @@ impl Pages {
         let (draws, page_points) = (self.draws, self.page_points);
         let spare = &mut self.spare;
         let page = self.held.entry(serial).or_insert_with(|| {
-            let room = spare.pop().unwrap_or_else(|| Room::new(device, draws, page_points));
-            Page { room, points: 0, uploaded }
+            let storage = spare.pop().unwrap_or_else(|| Storage::new(device, draws, page_points));
+            Page { storage, points: 0, uploaded }
         });
         if page.uploaded.revision != uploaded.revision {
             page.points = 0;
@@ -90,7 +90,7 @@ impl Pages {
         page.uploaded = uploaded;
         let left = page_points - page.points;
         let points = points.get(..left).unwrap_or(points);
-        page.room.write(queue, page.points, points);
+        page.storage.write(queue, page.points, points);
         page.points += points.len();
     }
 
@@ -98,7 +98,7 @@ impl Pages {
     pub(super) fn retain_from(&mut self, first: u64) {
         let kept = self.held.split_off(&first);
         let gone = std::mem::replace(&mut self.held, kept);
-        self.spare.extend(gone.into_values().map(|page| page.room));
+        self.spare.extend(gone.into_values().map(|page| page.storage));
         // A cleared store would otherwise keep its memory for ever.
         self.spare.truncate(self.held.len().max(1));
     }
@@ -117,23 +117,23 @@ impl Pages {
     /// The buffer of a page that the graphics card draws, and its number of points.
     pub(super) fn on_card(&self, serial: u64) -> Option<(&wgpu::Buffer, usize)> {
         let page = self.held.get(&serial)?;
-        match &page.room {
-            Room::Card(buffer) => Some((buffer, page.points)),
-            Room::Processor(_) => None,
+        match &page.storage {
+            Storage::Card(buffer) => Some((buffer, page.points)),
+            Storage::Processor(_) => None,
         }
     }
 
     /// The points of a range that the processor draws.
     pub(super) fn in_memory(&self, range: PageRange) -> Option<&[LinePoint]> {
         let page = self.held.get(&range.serial)?;
-        match &page.room {
-            Room::Card(_) => None,
-            Room::Processor(points) => points.get(range.first..page.points),
+        match &page.storage {
+            Storage::Card(_) => None,
+            Storage::Processor(points) => points.get(range.first..page.points),
         }
     }
 }
 
-impl Room {
+impl Storage {
     fn new(device: &wgpu::Device, draws: Draws, page_points: usize) -> Self {
         match draws {
             Draws::Card => Self::Card(device.create_buffer(&wgpu::BufferDescriptor {
@@ -153,9 +153,9 @@ impl Room {
             Self::Card(buffer) => {
                 queue.write_buffer(buffer, at as u64 * STRIDE, bytemuck::cast_slice(points));
             }
-            Self::Processor(room) => {
-                room.truncate(at);
-                room.extend_from_slice(points);
+            Self::Processor(storage) => {
+                storage.truncate(at);
+                storage.extend_from_slice(points);
             }
         }
     }

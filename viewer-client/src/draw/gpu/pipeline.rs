@@ -88,13 +88,13 @@ pub(super) struct Recipe<'a> {
     pub(super) topology: wgpu::PrimitiveTopology,
     /// Depth is reversed: `Greater` lets pass what is nearer.
     pub(super) depth: wgpu::CompareFunction,
-    /// What becomes of the colour that is there.
+    /// How the new colour is combined with the one already there.
     pub(super) ink: Ink,
-    /// What it reads besides the uniforms, in group 1.
+    /// What it reads in addition to the uniforms, in group 1.
     pub(super) extra: Option<&'a wgpu::BindGroupLayout>,
 }
 
-/// What becomes of the colour that is there.
+/// How the new colour is combined with the one already there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ink {
     /// It is replaced, and so is the depth.

@@ -33,7 +33,9 @@ pub fn read_back(
         // The receiver waits below; it is gone only when the wait failed.
         drop(sender.send(result));
     });
-    device.poll(wgpu::PollType::wait_indefinitely()).context("the graphics driver gave up")?;
+    device
+        .poll(wgpu::PollType::wait_indefinitely())
+        .context("the graphics driver stopped responding")?;
     receiver.recv().context("the picture was never mapped")??;
     let mapped = buffer.get_mapped_range(..).context("the picture cannot be read")?;
     let rows = mapped.chunks_exact(padded as usize);

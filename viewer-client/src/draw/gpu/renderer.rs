@@ -32,7 +32,7 @@ pub struct Renderer {
     /// What the window shows.
     shown: Option<Shown>,
     /// What takes its place when it is done.
-    coming: Option<Coming>,
+    coming: Option<PictureInProgress>,
     allowance: Allowance,
     /// Where the processor draws the paths.
     software: Option<Software>,
@@ -54,7 +54,7 @@ struct Shown {
 
 /// A picture that takes several frames.
 #[derive(Debug)]
-struct Coming {
+struct PictureInProgress {
     target: Target,
     picture: Picture,
     content: u64,
@@ -234,7 +234,7 @@ impl Renderer {
     /// paths that have come since it was begun.
     fn go_on(&mut self, encoder: &mut wgpu::CommandEncoder, wanted: &Picture) {
         let coming = self.coming.take().filter(|coming| coming.picture.same_view(wanted));
-        let mut coming = coming.unwrap_or_else(|| Coming {
+        let mut coming = coming.unwrap_or_else(|| PictureInProgress {
             target: self.kit.new_target(wanted),
             picture: wanted.clone(),
             content: self.content,
@@ -253,7 +253,7 @@ impl Renderer {
         self.kit.draw(encoder, &coming.target, &coming.picture, steps, part);
         coming.next = end;
         if part.last {
-            let Coming { target, picture, content, .. } = coming;
+            let PictureInProgress { target, picture, content, .. } = coming;
             self.composite.set_picture(&self.kit.device, target.resolved());
             self.shown = Some(Shown { target, picture, content, whole: true });
         } else {

@@ -105,7 +105,7 @@ impl Form for Editor<'_> {
                 }
             }
             if names.is_empty() {
-                ui.weak("The scene has none with a name");
+                ui.weak("The scene has none that is named");
             }
         });
         if let Some(chosen) = chosen {
@@ -212,7 +212,7 @@ fn edit_joined(ui: &mut Ui, test: &mut VertexTest, context: &Context<'_>) -> boo
 fn more_at_vertex(ui: &mut Ui, test: &mut VertexTest, context: &Context<'_>) -> bool {
     let proposals = || VertexCheck::proposals(context.scene, context.spot);
     let menu = ui.menu_button("&", |ui| add::lines(ui, proposals()));
-    menu.response.on_hover_text("Ask for more at the same vertex");
+    menu.response.on_hover_text("Add a test at the same vertex");
     let Some(more) = menu.inner.flatten() else { return false };
     *test = Tree::And(vec![std::mem::take(test), Tree::Leaf(more)]);
     true
@@ -249,8 +249,8 @@ fn edit_expression(ui: &mut Ui, expression: &mut LightPathExpression) -> bool {
         }
         Ok(_) => {
             response.on_hover_text(
-                "Read from the camera C or the light L. `RD` is two vertices, `<RD>` one that is \
-                 both; `.` is any, `*` any number of times.",
+                "Read from the camera C or the light L. `RD` is two vertices, `<RD>` is one \
+                vertex that is both; `.` is anything, `*` repeats any number of times.",
             );
         }
     }

@@ -151,11 +151,11 @@ fn parts(
     context: &Context<'_>,
     done: &mut LineEdit,
 ) {
-    if ui.small_button("×").on_hover_text("Take this condition away").clicked() {
+    if ui.small_button("×").on_hover_text("Remove this condition").clicked() {
         done.edit = Edit::Removed;
     }
     let not = Button::selectable(negative, "not").small();
-    done.turned = ui.add(not).on_hover_text("Want the opposite").clicked();
+    done.turned = ui.add(not).on_hover_text("Negate this").clicked();
     match filter {
         Filter::Leaf(leaf) => {
             let changed = edit::edit(ui, leaf, context);
@@ -178,7 +178,7 @@ fn more(ui: &mut Ui, filter: &Filter, context: &Context<'_>) -> Option<(Filter, 
         }
         and.map(|other| (other, false)).or_else(|| or.map(|other| (other, true)))
     });
-    menu.response.on_hover_text("Put it together with another condition, or copy it");
+    menu.response.on_hover_text("Combine it with another condition, or copy it");
     menu.inner.flatten()
 }
 
@@ -197,11 +197,11 @@ fn group(
     let mut edit = Edit::Nothing;
     let mut turned = false;
     ui.horizontal(|ui| {
-        if ui.small_button("×").on_hover_text("Take all of these away").clicked() {
+        if ui.small_button("×").on_hover_text("Remove all of these").clicked() {
             edit = Edit::Removed;
         }
         let not = Button::selectable(negative, "not").small();
-        turned = ui.add(not).on_hover_text("Want the opposite of all of it").clicked();
+        turned = ui.add(not).on_hover_text("Negate all of this").clicked();
         let before = either;
         ComboBox::from_id_salt(("join", depth))
             .width(76.0)
@@ -211,7 +211,7 @@ fn group(
                 ui.selectable_value(&mut either, true, "any of");
             })
             .response
-            .on_hover_text("Whether a path must meet all of these, or any");
+            .on_hover_text("Whether a path must meet all of these conditions, or any of them");
         edit = edit.or(Edit::changed(before != either));
         if let Some(more) = add::menu(ui, "+", context) {
             parts.push(more);
@@ -266,14 +266,14 @@ fn joined_tests(
     let mut test = |ui: &mut Ui, index: usize, part: &mut VertexTest| {
         if index > 0 {
             let word = if *either { "or" } else { "and" };
-            let tip = "At the same vertex; a click changes between and, or";
+            let tip = "At the same vertex; click to switch between `and` and `or`";
             if ui.small_button(word).on_hover_text(tip).clicked() {
                 *either = !*either;
                 changed = true;
             }
         }
         changed |= edit::edit_test(ui, part, context);
-        if ui.small_button("×").on_hover_text("Take this test away").clicked() {
+        if ui.small_button("×").on_hover_text("Remove this test").clicked() {
             gone = Some(index);
         }
     };

@@ -8,7 +8,7 @@ use egui_kittest::kittest::Queryable as _;
 use super::*;
 use crate::command::Command;
 use crate::panel::Panel;
-use crate::panel::tests::Stage;
+use crate::panel::tests::Fixture;
 use crate::source::model::Model;
 use crate::synthetic::{mesh, welcome};
 
@@ -22,18 +22,18 @@ impl Panel for Alone {
     }
 }
 
-fn builder(text: &str) -> Harness<'static, Stage> {
-    let mut stage = Stage::new(Alone);
-    stage.status.welcome(welcome());
-    stage.model = Model::new(mesh());
-    stage.settings.filter.apply(&FilterCommand::Set(FilterText::read(text)));
-    let mut harness = stage.harness();
+fn builder(text: &str) -> Harness<'static, Fixture> {
+    let mut fixture = Fixture::new(Alone);
+    fixture.status.welcome(welcome());
+    fixture.model = Model::new(mesh());
+    fixture.settings.filter.apply(&FilterCommand::Set(FilterText::read(text)));
+    let mut harness = fixture.harness();
     harness.run_steps(3);
     harness
 }
 
 /// The text after the panel's commands.
-fn text(harness: &mut Harness<'_, Stage>) -> String {
+fn text(harness: &mut Harness<'_, Fixture>) -> String {
     harness.run_steps(3);
     for command in std::mem::take(&mut harness.state_mut().said) {
         if let Command::Filter(command) = command {
@@ -44,13 +44,13 @@ fn text(harness: &mut Harness<'_, Stage>) -> String {
     harness.state().settings.filter.text().to_string()
 }
 
-fn click(harness: &mut Harness<'_, Stage>, label: &str) -> String {
+fn click(harness: &mut Harness<'_, Fixture>, label: &str) -> String {
     harness.get_all_by_label(label).last().expect(label).click();
     text(harness)
 }
 
 /// Follows a menu into its submenus.
-fn choose(harness: &mut Harness<'_, Stage>, labels: &[&str]) -> String {
+fn choose(harness: &mut Harness<'_, Fixture>, labels: &[&str]) -> String {
     let mut last = String::new();
     for label in labels {
         last = click(harness, label);
@@ -131,7 +131,7 @@ fn text_and_tree_are_the_same_filter() {
 }
 
 /// Chooses in the list of this number within a row.
-fn select(harness: &mut Harness<'_, Stage>, list: usize, label: &str) -> String {
+fn select(harness: &mut Harness<'_, Fixture>, list: usize, label: &str) -> String {
     harness.get_all_by_role(Role::ComboBox).nth(list).expect("a list").click();
     harness.run_steps(3);
     click(harness, label)

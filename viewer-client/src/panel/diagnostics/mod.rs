@@ -33,7 +33,7 @@ impl Panel for DiagnosticsPanel {
             empty_state(
                 ui,
                 "No chains yet",
-                "How well they explore shows within seconds of connecting to a daemon.",
+                "Diagnostics appear within seconds of connecting to a daemon.",
             );
             return;
         };
@@ -46,8 +46,8 @@ impl Panel for DiagnosticsPanel {
             }
             None => empty_state(
                 ui,
-                "Nothing is known of their agreement",
-                "This daemon does not tell; a newer one does.",
+                "Agreement of the chains is unknown",
+                "This daemon does not report it; a newer one does.",
             ),
         }
         caption(ui, "Acceptance of each strategy over time");
@@ -55,7 +55,7 @@ impl Panel for DiagnosticsPanel {
         caption(ui, "What became of the proposals");
         fates::show(ui, world, statistics);
         let Some(diagnostics) = &statistics.diagnostics else { return };
-        caption(ui, "Memory: correlation of log luminance, against steps");
+        caption(ui, "Memory: correlation of log luminance over steps");
         plots::memory(ui, diagnostics);
         caption(ui, "Longest stays");
         stays::show(ui, world, diagnostics, commands);
@@ -66,8 +66,8 @@ impl Section for DiagnosticsPanel {
     const NAME: PanelName = PanelName::Diagnostics;
     const TITLE: &'static str = "Chains";
     const HELP: &'static [&'static str] = &[
-        "Whether the image can be believed, from every step of every chain. R-hat above 1.1 means \
-         that chains disagree; the maps show where.",
+        "Whether the image can be trusted, judged from every step of every chain. R-hat above 1.1 \
+        means that the chains disagree; the maps show where.",
     ];
 
     fn applies(world: &World<'_>) -> bool {
@@ -81,10 +81,10 @@ impl Section for DiagnosticsPanel {
         let worst = diagnostics.maps.r_hat.iter().copied().fold(0.0_f32, f32::max);
         lines.put(format_args!("R-hat of the worst tile\t{worst:.4}"));
         lines.put(format_args!("effective samples\t{:.0}", diagnostics.effective_samples));
-        lines.put(format_args!("steps for one\t{:.1}", diagnostics.correlation_steps));
+        lines.put(format_args!("steps per effective sample\t{:.1}", diagnostics.correlation_steps));
         for (power, correlation) in diagnostics.autocorrelation.iter().enumerate() {
             lines.put(format_args!(
-                "correlation of stretches of\t{}\t{correlation:.4}",
+                "correlation of blocks of steps\t{}\t{correlation:.4}",
                 1_u64 << power.min(63)
             ));
         }
@@ -99,20 +99,20 @@ fn caption(ui: &mut Ui, text: &str) {
 
 /// A tile where chains disagree.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Quarrel {
+struct Disagreement {
     tile: usize,
     r_hat: f32,
 }
 
 /// The tiles where chains disagree, the worst first. Tiles that hardly anything leads to are left out.
-fn quarrels(diagnostics: &Diagnostics) -> Vec<Quarrel> {
+fn quarrels(diagnostics: &Diagnostics) -> Vec<Disagreement> {
     let maps = &diagnostics.maps;
     let pairs = maps.r_hat.iter().zip(&maps.visits).zip(&maps.dwell).enumerate();
-    let mut found: Vec<Quarrel> = pairs
+    let mut found: Vec<Disagreement> = pairs
         .filter(|(_, ((r_hat, visits), dwell))| {
             **r_hat > DISAGREEMENT && **visits * dwell.max(1.0) > WORTH_A_LOOK
         })
-        .map(|(tile, ((&r_hat, _), _))| Quarrel { tile, r_hat })
+        .map(|(tile, ((&r_hat, _), _))| Disagreement { tile, r_hat })
         .collect();
     found.sort_by(|a, b| b.r_hat.total_cmp(&a.r_hat));
     found
@@ -132,14 +132,14 @@ fn verdict(ui: &mut Ui, world: &World<'_>, diagnostics: &Diagnostics, commands: 
     let overall = diagnostics.r_hat as f32;
     let (color, text) = match quarrels.first() {
         _ if overall == 0.0 => {
-            (theme::BUSY, "Too early to tell whether the chains agree".to_owned())
+            (theme::BUSY, "It is too early to tell whether the chains agree".to_owned())
         }
         Some(worst) => {
             let share = 100.0 * quarrels.len() as f32 / diagnostics.grid.len().max(1) as f32;
             let worst = worst.r_hat;
             (
                 theme::BAD,
-                format!("Chains disagree in {share:.1} % of the image, R-hat to {worst:.2}"),
+                format!("Chains disagree in {share:.1} % of the image, R-hat up to {worst:.2}"),
             )
         }
         None if overall > DISAGREEMENT => {
@@ -147,8 +147,9 @@ fn verdict(ui: &mut Ui, world: &World<'_>, diagnostics: &Diagnostics, commands: 
         }
         None => (theme::GOOD, format!("Chains agree: R-hat {overall:.3}")),
     };
-    let tip = "R-hat compares how much chains differ with how much each varies. 1 is agreement; above \
-               1.1 the image depends on where chains began, and may be wrong without looking noisy.";
+    let tip = "R-hat compares how much the chains differ from each other with how much each of \
+        them varies. 1 means agreement; above 1.1 the image depends on where the chains started, \
+        and may be wrong without looking noisy.";
     ui.horizontal(|ui| {
         dot(ui, color);
         ui.add(Label::new(RichText::new(text).strong()).wrap()).on_hover_text(tip);
@@ -158,13 +159,16 @@ fn verdict(ui: &mut Ui, world: &World<'_>, diagnostics: &Diagnostics, commands: 
         return;
     }
     ui.horizontal(|ui| {
-        let map = ui.button("Show where").on_hover_text("The map of disagreement on the image");
+        let map =
+            ui.button("Show where").on_hover_text("Show the map of disagreement on the image");
         if map.clicked() {
             commands.push(Command::Image(ImageCommand::Show(Layer::Disagreement)));
             reveal(ui, PanelName::Image, world, commands);
         }
         let Some(worst) = worst else { return };
-        let paths = ui.button("Paths to the worst").on_hover_text("Filters by the worst tile");
+        let paths = ui
+            .button("Paths to the worst tile")
+            .on_hover_text("Show only the paths to the tile with the largest R-hat");
         if paths.clicked() && world.film.size() != [0, 0] {
             let region = region_of(diagnostics, worst.tile, world.film.size());
             let text = region::with_region(world.settings.filter.text(), Some(region));
@@ -183,12 +187,12 @@ fn samples(ui: &mut Ui, statistics: &Statistics, diagnostics: &Diagnostics) {
         let steps = format::count(statistics.totals.steps as f64);
         reading(left, big(known(diagnostics.effective_samples)), "effective samples")
             .on_hover_text(format!(
-                "Independent samples that {steps} steps are worth, for log luminance"
+                "How many independent samples {steps} steps are worth, for log luminance"
             ));
         let text = known(diagnostics.correlation_steps.ceil());
         reading(right, big(text), "steps for an independent one").on_hover_text(
-            "Twice the integrated autocorrelation time of log luminance, from means over ever \
-             longer blocks of steps",
+            "Twice the integrated autocorrelation time of log luminance, from means over \
+            increasingly long blocks of steps",
         );
     });
 }

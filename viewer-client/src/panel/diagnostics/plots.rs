@@ -106,7 +106,7 @@ pub(super) fn acceptance(ui: &mut Ui, world: &World<'_>) {
 /// Correlation between neighbouring blocks of steps against their length, by powers of two.
 pub(super) fn memory(ui: &mut Ui, diagnostics: &Diagnostics) {
     if diagnostics.autocorrelation.is_empty() {
-        ui.label("Too few steps, or a luminance that never changes.");
+        ui.label("There are too few steps, or the luminance never changes.");
         return;
     }
     let points: Vec<[f64; 2]> = (0..)

@@ -22,9 +22,12 @@ pub(super) fn show(
     };
     Grid::new("stays").num_columns(5).spacing([8.0, 3.0]).show(ui, |ui| {
         for (title, tip) in [
-            ("steps", "How long a chain stayed, every proposal rejected or failed"),
-            ("path", "Light, specular, diffuse, eye; from the light"),
-            ("made by", "The strategy that led there"),
+            (
+                "steps",
+                "How many steps a chain stayed here, because every proposal was rejected or failed",
+            ),
+            ("path", "The path's class: light, specular, diffuse, eye, starting at the light"),
+            ("made by", "The strategy that proposed it"),
         ] {
             ui.label(RichText::new(title).small().weak()).on_hover_text(tip);
         }
@@ -43,7 +46,10 @@ pub(super) fn show(
             if row.contains_pointer() {
                 hover::point(ui.ctx(), Pointed::Stay(rank.into()));
             }
-            row.on_hover_text(format!("Path {}; marked in the view and on the image", header.id));
+            row.on_hover_text(format!(
+                "Path {}; highlighted in the view and on the image",
+                header.id
+            ));
             jump(ui, rank, header.id, commands);
             ui.end_row();
             rank += 1;
@@ -53,11 +59,10 @@ pub(super) fn show(
 
 /// Selects the path, or makes it the explorer's, to see what becomes of its proposals.
 fn jump(ui: &mut Ui, rank: u8, id: PathId, commands: &mut Vec<Command>) {
-    if ui.small_button("Show").on_hover_text("Selects the path, in the view and in Path").clicked()
-    {
+    if ui.small_button("Show").on_hover_text("Select this path").clicked() {
         commands.push(Command::Path(PathCommand::Stay(rank)));
     }
-    let tip = "Watch proposals from this path: seeds the explorer with it";
+    let tip = "Watch proposals from this path in the explorer";
     if ui.small_button("Explore").on_hover_text(tip).clicked() {
         let seed = ExplorerCommand::Seed(Seed::Path(id));
         commands.push(Command::Order(Order::Explorer(seed)));

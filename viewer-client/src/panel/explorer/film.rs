@@ -40,7 +40,8 @@ impl ExplorerFilm {
         self.refresh(ui, world, look);
         let Some(texture) = &self.texture else { return };
         ui.add_space(6.0);
-        let caption = format!("Exploration, not the image: {}", format::steps(film.steps()));
+        let caption =
+            format!("This is exploration, not the image: {}", format::steps(film.steps()));
         ui.label(RichText::new(caption).small().color(theme::BUSY));
         let across = WIDTH.min(ui.available_width());
         let size = vec2(across, across * height as f32 / width as f32);
@@ -57,8 +58,9 @@ impl ExplorerFilm {
         let stroke = Stroke::new(1.5, theme::BUSY);
         ui.painter().extend(Shape::dashed_line(&corners, stroke, 6.0, 4.0));
         response.on_hover_text(
-            "What the explorer's steps alone would make of the image, with the image's exposure. It began \
-             at a picked path, so it is biased until it has gone everywhere.",
+            "The image that the explorer's steps alone would produce, at the exposure of the \
+            image. The explorer started from a chosen path, so this is biased until it has \
+            explored everything.",
         );
     }
 

@@ -53,8 +53,8 @@ impl Panel for ExplorerPanel {
             empty_state(
                 ui,
                 "Nothing to explore yet",
-                "Select a path in the view and press Enter: the daemon perturbs it, and shows every \
-                 proposal here.",
+                "Select a path in the view and press Enter: the daemon mutates it, and every \
+                proposal is shown here.",
             );
             return;
         }
@@ -76,9 +76,9 @@ impl Section for ExplorerPanel {
     const NAME: PanelName = PanelName::Explorer;
     const TITLE: &'static str = "Explorer";
     const HELP: &'static [&'static str] = &[
-        "A chain of your own, which never touches the image: seed it with a path and step it to \
-         see what each mutation does.",
-        "Only the driver may; the others watch.",
+        "A chain of your own, which never affects the image: start it from a path and step it to \
+        see what each mutation does.",
+        "Only the driver can do this; the others watch.",
     ];
     const KEYS: &'static [Group] = &[Group::Explorer];
 
@@ -103,7 +103,7 @@ impl Section for ExplorerPanel {
     }
 }
 
-/// Who steers, and how to become the one.
+/// Who drives, and how to become the driver.
 fn lease(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     let steering = &world.status.steering;
     let mut ask = |ui: &mut Ui, label: &str, tip: &str, request| {
@@ -114,14 +114,14 @@ fn lease(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         if world.status.role() == Role::Driver {
             ui.label(RichText::new("You drive").color(theme::GOOD));
-            ask(ui, "Let go", "Let another viewer steer", LeaseRequest::Release);
+            ask(ui, "Stop driving", "Let another viewer drive", LeaseRequest::Release);
         } else {
             let text = match steering.presence.driver() {
                 Some(driver) => format!("{} drives; you watch", driver.author.name),
                 None => "Nobody drives; you watch".to_owned(),
             };
             ui.label(RichText::new(text).weak());
-            ask(ui, "Ask to drive", "Only the driver may steer", LeaseRequest::Ask);
+            ask(ui, "Ask to drive", "Only the driver can steer", LeaseRequest::Ask);
         }
     });
     let others: Vec<&str> = world.others().map(|viewer| viewer.author.name.as_str()).collect();
@@ -131,7 +131,7 @@ fn lease(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     }
     if let Some(Ok(remark) | Err(remark)) = &steering.remark {
         let text = RichText::new(format::sentence(remark)).small().weak();
-        ui.label(text).on_hover_text("What the daemon said last");
+        ui.label(text).on_hover_text("The daemon's latest message");
     }
 }
 
@@ -140,12 +140,16 @@ fn seed(ui: &mut Ui, world: &World<'_>, order: &mut impl FnMut(ExplorerCommand))
     ui.horizontal(|ui| {
         let selected = world.selection.map(|selection| selection.header.id);
         let button = Button::new("Explore the selected path");
-        let tip = "Makes it the explorer's current path (Enter)";
+        let tip = "Start the explorer from the selected path (Enter)";
         let clicked = ui.add_enabled(selected.is_some(), button).on_hover_text(tip).clicked();
         if let Some(id) = selected.filter(|_| clicked) {
             order(ExplorerCommand::Seed(Seed::Path(id)));
         }
-        if ui.button("Newest").on_hover_text("Explore the path that came last").clicked() {
+        if ui
+            .button("Newest")
+            .on_hover_text("Start the explorer from the path that arrived last")
+            .clicked()
+        {
             order(ExplorerCommand::Seed(Seed::Newest));
         }
     });
@@ -161,16 +165,16 @@ impl ExplorerPanel {
         let state = &world.status.steering.explorer;
         ui.horizontal(|ui| {
             if state.pace == Pace::Paused {
-                if ui.button("Play").on_hover_text("Step by itself (K)").clicked() {
+                if ui.button("Play").on_hover_text("Take steps continuously (K)").clicked() {
                     order(ExplorerCommand::Play(self.rate.unwrap_or(state.rate)));
                 }
-            } else if ui.button("Pause").on_hover_text("Stand still (K)").clicked() {
+            } else if ui.button("Pause").on_hover_text("Pause (K)").clicked() {
                 order(ExplorerCommand::Pause);
             }
-            if ui.button("Step").on_hover_text("One proposal (N)").clicked() {
+            if ui.button("Step").on_hover_text("Make one proposal (N)").clicked() {
                 order(ExplorerCommand::Step(1));
             }
-            let tip = "On to the next accepted proposal (Shift+N)";
+            let tip = "Step until a proposal is accepted (Shift+N)";
             if ui.button("To acceptance").on_hover_text(tip).clicked() {
                 order(ExplorerCommand::Skip(SkipTo::Acceptance));
             }
@@ -196,7 +200,7 @@ impl ExplorerPanel {
         order: &mut impl FnMut(ExplorerCommand),
     ) {
         let names = world.names().strategies;
-        row(ui, "Of", "The strategy of the fan, and of the skip", |ui| {
+        row(ui, "Of", "The strategy for Fan and Skip to", |ui| {
             let chosen = world.strategy_name(usize::from(self.strategy));
             ComboBox::from_id_salt("of")
                 .width(92.0)
@@ -207,13 +211,13 @@ impl ExplorerPanel {
                     }
                 })
                 .response
-                .on_hover_text("Strategy of the fan and of the skip");
+                .on_hover_text("Strategy for Fan and Skip to");
             let strategy = StrategyId(self.strategy);
-            let tip = "On to the next step of this strategy";
+            let tip = "Step until this strategy makes a proposal";
             if ui.button("Skip to").on_hover_text(tip).clicked() {
                 order(ExplorerCommand::Skip(SkipTo::Strategy(strategy)));
             }
-            let tip = "Shows so many proposals of this strategy without moving";
+            let tip = "Show this many proposals of the strategy without moving";
             if ui.button("Fan").on_hover_text(tip).clicked() {
                 order(ExplorerCommand::Fan { strategy, count: self.fan });
             }
@@ -242,7 +246,8 @@ fn allowed(
             }
             dot(ui, theme::strategy_color(index));
             let button = Button::selectable(is_in, RichText::new(name).small());
-            let response = ui.add(button).on_hover_text("Whether this strategy may act");
+            let response =
+                ui.add(button).on_hover_text("Whether the explorer may use this strategy");
             if response.contains_pointer() {
                 hover::point(ui.ctx(), Pointed::Strategy(index));
             }

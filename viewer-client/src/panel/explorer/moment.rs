@@ -25,7 +25,7 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, moment: &Moment, commands: &m
         ui.label(RichText::new(world.strategy_name(usize::from(step.strategy.0))).strong());
         let fan = if step.fan { "fan, " } else { "" };
         ui.label(RichText::new(format!("{fan}no. {}", step.number)).weak());
-        let tip = "Selects the path before the step, with all its numbers in Selected path";
+        let tip = "Select the path before the step; Selected path shows all its numbers";
         if ui.small_button("Inspect x").on_hover_text(tip).clicked() {
             commands.push(Command::Path(PathCommand::Explored));
         }
@@ -70,7 +70,7 @@ fn acceptance_bar(ui: &mut Ui, a: f32, color: Color32) {
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &text));
     let ink = ui.visuals().strong_text_color();
     painter.text(rect.center(), Align2::CENTER_CENTER, text, FontId::monospace(12.0), ink);
-    response.on_hover_text("Probability that the chain goes from the path x to its proposal y");
+    response.on_hover_text("Probability that the chain moves from the path x to the proposal y");
 }
 
 /// The path before and after, letter by letter, with what was deleted and what is new.
@@ -79,18 +79,23 @@ fn classes(ui: &mut Ui, moment: &Moment) {
     let before = &moment.before.vertices;
     let kept_from = before.len().saturating_sub(step.kept_eye);
     let is_kept = |i: usize| i < step.kept_light || i >= kept_from;
-    row(ui, "Deleted", "The path before; struck out is what the proposal replaces", |ui| {
-        letters(ui, before, |i| if is_kept(i) { Mark::Kept } else { Mark::Deleted });
-    });
+    row(
+        ui,
+        "Deleted",
+        "The path before the step; what the proposal replaces is struck out",
+        |ui| {
+            letters(ui, before, |i| if is_kept(i) { Mark::Kept } else { Mark::Deleted });
+        },
+    );
     if let Some(after) = moment.proposal() {
         let new_to = after.len().saturating_sub(step.kept_eye);
         let is_new = |i: usize| i >= step.kept_light && i < new_to;
-        row(ui, "Proposed", "The proposed path; in a frame is what is new", |ui| {
+        row(ui, "Proposed", "The proposed path; what is new is framed", |ui| {
             letters(ui, &after, |i| if is_new(i) { Mark::New } else { Mark::Kept });
         });
     } else {
         let made = [step.inserted.as_slice(), step.eye_side.as_slice()].concat();
-        row(ui, "Came to", "The vertices that were made until it failed", |ui| {
+        row(ui, "Got as far as", "The vertices generated before it failed", |ui| {
             letters(ui, &made, |_| Mark::New);
         });
     }
@@ -130,8 +135,12 @@ fn factors(ui: &mut Ui, moment: &Moment) {
     let f = &moment.step.factors;
     let number = |value: f64| format!("{value:.4e}");
     let lines = [
-        ("Q(y | x)", number(f.forward), "Density of proposing y from x, over the luminance of y"),
-        ("Q(x | y)", number(f.backward), "The same for the way back"),
+        (
+            "Q(y | x)",
+            number(f.forward),
+            "Density of proposing y from x, divided by the luminance of y",
+        ),
+        ("Q(x | y)", number(f.backward), "The same for the reverse move"),
     ];
     for (label, value, tip) in lines {
         row(ui, label, tip, |ui| ui.label(RichText::new(value).monospace()));
@@ -143,16 +152,16 @@ fn factors(ui: &mut Ui, moment: &Moment) {
         (
             "Q back / forth",
             way,
-            "Q(x | y) over Q(y | x): above 1 where the way back is the easier one",
+            "Q(x | y) over Q(y | x): above 1 if the reverse move is the more likely one",
         ),
-        ("Z(x) / Z(y)", mixture, "Weights of the strategies that can act on x, over those on y"),
+        ("Z(x) / Z(y)", mixture, "Total weight of the strategies that apply to x, over that for y"),
         (
             "rho(y) / rho(x)",
             target,
-            "How much more often y is visited than x for its light: what other samples find well is \
-             left to them",
+            "How much more often y is to be visited than x, relative to its light: light that \
+            base samples find well is left to them",
         ),
-        ("r", way * mixture * target, "The product of all three; a is the lesser of r and 1"),
+        ("r", way * mixture * target, "The product of all three; a is the smaller of r and 1"),
     ];
     for (label, value, tip) in ratios {
         row(ui, label, tip, |ui| balance(ui, value));
@@ -167,7 +176,7 @@ fn quotient(over: f64, under: f64) -> f64 {
 /// A factor as a number, and as a bar from the middle: to the right above 1, to the left below; a third
 /// of half the bar is a power of ten.
 fn balance(ui: &mut Ui, factor: f64) {
-    let text = if factor > 0.0 { format::exact(factor) } else { "0: no way back".to_owned() };
+    let text = if factor > 0.0 { format::exact(factor) } else { "0: no reverse move".to_owned() };
     let size = vec2(ui.available_width(), 16.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &text));

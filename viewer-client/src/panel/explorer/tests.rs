@@ -10,31 +10,31 @@ use egui_kittest::kittest::Queryable as _;
 use super::ExplorerPanel;
 use crate::command::{Command, PathCommand};
 use crate::panel::hover::{self, Pointed};
-use crate::panel::tests::{Stage, shows};
+use crate::panel::tests::{Fixture, shows};
 use crate::source::steering::tests::{step, vertex};
 
 /// A driver's panel over an explorer that has a path.
-fn driven() -> Stage {
-    let mut stage = Stage::new(ExplorerPanel::default());
-    stage.status.welcome(crate::synthetic::welcome());
-    let session = stage.status.welcome.as_ref().map_or(0, |w| w.session);
+fn driven() -> Fixture {
+    let mut fixture = Fixture::new(ExplorerPanel::default());
+    fixture.status.welcome(crate::synthetic::welcome());
+    let session = fixture.status.welcome.as_ref().map_or(0, |w| w.session);
     let author = Author { session, name: "me".to_owned() };
     let me = Attendee { author, role: Role::Driver, ..Attendee::default() };
-    let steering = &mut stage.status.steering;
+    let steering = &mut fixture.status.steering;
     steering.accept(Notice::Presence(Presence { viewers: vec![me] }));
     steering.explorer.current = Some(PathId::default());
     steering.explorer.rate = 2.0;
     let vertices = (0..4).map(vertex).collect();
     steering.focus.set_path(FocusPath { vertices, next: 1, ..FocusPath::default() });
-    stage
+    fixture
 }
 
-fn click(harness: &mut Harness<'_, Stage>, label: &str) {
+fn click(harness: &mut Harness<'_, Fixture>, label: &str) {
     harness.get_by_label(label).click();
     harness.run();
 }
 
-fn orders(harness: &Harness<'_, Stage>) -> Vec<ExplorerCommand> {
+fn orders(harness: &Harness<'_, Fixture>) -> Vec<ExplorerCommand> {
     let order = |command: &Command| match command {
         Command::Order(Order::Explorer(command)) => Some(*command),
         _ => None,
@@ -68,9 +68,9 @@ fn every_button_steers() {
 
 #[test]
 fn observers_watch_and_may_ask() {
-    let mut stage = driven();
-    stage.status.steering.presence = Presence::default();
-    let mut harness = stage.harness();
+    let mut fixture = driven();
+    fixture.status.steering.presence = Presence::default();
+    let mut harness = fixture.harness();
     harness.run();
     click(&mut harness, "Step");
     assert_eq!(orders(&harness), [], "it does not steer");
@@ -81,11 +81,11 @@ fn observers_watch_and_may_ask() {
 
 #[test]
 fn a_failed_step_says_why() {
-    let mut stage = driven();
-    let focus = &mut stage.status.steering.focus;
+    let mut fixture = driven();
+    let focus = &mut fixture.status.steering.focus;
     focus.add_step(step(1, FocusOutcome::Rejected, 4));
     focus.add_step(step(2, FocusOutcome::Failed(0), 4));
-    let mut harness = stage.harness();
+    let mut harness = fixture.harness();
     harness.run();
     assert!(shows(&harness, "Failed: occluded"), "why it failed");
     click(&mut harness, "Back");
@@ -99,7 +99,7 @@ fn a_failed_step_says_why() {
 
 #[test]
 fn an_acceptance_is_taken_apart() {
-    let mut stage = driven();
+    let mut fixture = driven();
     let factors = RatioFactors {
         forward: 4.0,
         backward: 1.0,
@@ -109,8 +109,8 @@ fn an_acceptance_is_taken_apart() {
         target_proposed: 0.25,
     };
     let told = FocusStep { factors, acceptance: 0.1875, ..step(1, FocusOutcome::Rejected, 4) };
-    stage.status.steering.focus.add_step(told);
-    let mut harness = stage.harness();
+    fixture.status.steering.focus.add_step(told);
+    let mut harness = fixture.harness();
     harness.run();
     for text in ["a = 0.1875", "4.0000e0", "1.0000e0", "0.2500", "1.500", "0.5000", "0.1875"] {
         assert!(shows(&harness, text), "`{text}` is missing");
@@ -125,16 +125,16 @@ fn an_acceptance_is_taken_apart() {
     };
     harness.state_mut().status.steering.focus.add_step(one_way);
     harness.run();
-    assert!(shows(&harness, "0: no way back"), "in words");
+    assert!(shows(&harness, "0: no reverse move"), "in words");
 }
 
 #[test]
 fn a_step_under_the_cursor_is_shown_without_a_click() {
-    let mut stage = driven();
-    let focus = &mut stage.status.steering.focus;
+    let mut fixture = driven();
+    let focus = &mut fixture.status.steering.focus;
     focus.add_step(step(1, FocusOutcome::Failed(1), 4));
     focus.add_step(step(2, FocusOutcome::Rejected, 4));
-    let mut harness = stage.harness();
+    let mut harness = fixture.harness();
     harness.run();
     let strip = harness.get_by_label("Last steps").rect();
     harness.hover_at(strip.left_center() + egui::vec2(3.0, 0.0));
@@ -151,17 +151,20 @@ fn a_step_under_the_cursor_is_shown_without_a_click() {
 
 #[test]
 fn the_exploration_has_a_film_that_nobody_takes_for_the_image() {
-    let mut stage = driven();
+    let mut fixture = driven();
     let rgb = [0.1, 0.3, 0.6].repeat(40 * 30);
     let tile = FilmTile { sequence: 1, width: 40, height: 30, first_row: 0, steps: 2400, rgb };
     let mut harness = {
         let mut bare = driven().harness();
         bare.run();
-        assert!(!shows(&bare, "Exploration"), "there is none before the first step");
-        assert!(stage.status.steering.film.accept(&tile), "a sound tile");
-        stage.harness()
+        assert!(!shows(&bare, "This is exploration"), "there is none before the first step");
+        assert!(fixture.status.steering.film.accept(&tile), "a sound tile");
+        fixture.harness()
     };
     harness.run();
-    assert!(shows(&harness, "Exploration, not the image: 2.40 k steps"), "it says what it is");
+    assert!(
+        shows(&harness, "This is exploration, not the image: 2.40 k steps"),
+        "it says what it is"
+    );
     harness.get_by_label("Film of the exploration");
 }

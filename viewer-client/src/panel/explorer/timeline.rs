@@ -73,7 +73,7 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) 
         };
         scrub(ui, "Back", "The step before", number(place.and_then(|i| i.checked_sub(1))));
         scrub(ui, "Forward", "The step after", number(place.map(|i| i + 1)));
-        scrub(ui, "Live", "Follow the newest step", world.scrub.map(|_| None));
+        scrub(ui, "Live", "Follow the latest step", world.scrub.map(|_| None));
     });
 }
 
@@ -85,7 +85,7 @@ fn explain(ui: &mut Ui, world: &World<'_>, pointed: Option<&Moment>) {
         ui.label(RichText::new(format!("No. {}: {strategy}", step.number)).strong());
         ui.label(format!("{word}, a = {:.4}", step.acceptance));
     }
-    let key = "Bars are as high as a, short stubs are failures, dots are strategies. Click or drag to \
-               stay at a step.";
+    let key = "The height of a bar is a, short stubs are failures, the colours of the dots are \
+        strategies. Click or drag to hold a step.";
     ui.label(RichText::new(key).small().weak());
 }

@@ -19,11 +19,11 @@ pub(super) fn show(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) 
     let reply = world.status.filter.as_ref();
     let bad = theme::bad(ui.visuals().dark_mode);
     if let Some(error) = reply.and_then(|reply| reply.error.as_ref()) {
-        ui.add(Label::new(RichText::new(format!("Refused: {}", error.message)).color(bad)).wrap());
+        ui.add(Label::new(RichText::new(format!("Rejected: {}", error.message)).color(bad)).wrap());
     }
-    let tip = "Since the filter was set; matching and seen are the daemon's";
+    let tip = "Since the filter was set; the daemon counts matching and seen paths";
     ui.add(Label::new(text(world, counts)).wrap()).on_hover_text(tip);
-    row(ui, "Energy", "Share of the image's light that matching paths carry", |ui| {
+    row(ui, "Energy", "Share of the image's light carried by matching paths", |ui| {
         ui.label(RichText::new(energy(counts)).monospace().strong());
     });
     let conditions = match (world.playback, world.store.filter()) {
@@ -43,7 +43,7 @@ pub(crate) fn text(world: &World<'_>, counts: &FilterCounts) -> String {
     if shown as u64 > counts.matched {
         // Some came before the filter, or after the daemon counted last.
         return format!(
-            "{shown_text} shown; counted since the filter: {matched} matching of {seen} seen"
+            "{shown_text} shown; since the filter was set, {matched} of {seen} matched"
         );
     }
     format!("{shown_text} shown of {matched} matching of {seen} seen")
@@ -82,7 +82,7 @@ fn nothing_found(
             commands.push(Command::Filter(FilterCommand::Enable(Switch::Off)));
         }
     });
-    ui.label(RichText::new("Alone, each would let through:").small().weak());
+    ui.label(RichText::new("Paths that meet each condition by itself:").small().weak());
     for (condition, &count) in conditions.iter().zip(&counts.conditions) {
         let share = format::percent(count as f64, counts.seen as f64);
         let text = RichText::new(format!("{share:>8}  {condition}"));
@@ -112,7 +112,8 @@ fn nearest(
         });
     }
     if world.playback.is_none() {
-        let tip = "Let the explorer start from this path, and step towards what is wanted";
+        let tip = "Start the explorer from this path, to step towards the paths you are looking \
+            for";
         if ui.button("Explore from the nearest path").on_hover_text(tip).clicked() {
             let seed = ExplorerCommand::Seed(Seed::Path(miss.path));
             commands.push(Command::Order(Order::Explorer(seed)));
@@ -123,7 +124,7 @@ fn nearest(
 /// The nearest miss in words.
 fn explained(miss: &NearestMiss, conditions: &[String], settings: &FilterSettings) -> String {
     if miss.failed.is_empty() {
-        return "No path can match: `false` is asked for.".to_owned();
+        return "No path can match, because the filter is `false`.".to_owned();
     }
     let held = miss.asked.saturating_sub(miss.failed.len() as u32);
     let mut text = match miss.asked {
@@ -149,7 +150,7 @@ type Remedy = (String, &'static str, FilterCommand);
 
 /// What would let a path through that lacks this.
 fn remedies(settings: &FilterSettings, failed: &Shortfall) -> Vec<Remedy> {
-    let drop = "Ask for this no longer";
+    let drop = "Remove this condition";
     match settings.source(failed.condition as usize) {
         Some(FilterSource::Sphere(number)) => {
             let name = format!("sphere {}", number + 1);
@@ -159,7 +160,7 @@ fn remedies(settings: &FilterSettings, failed: &Shortfall) -> Vec<Remedy> {
                     return None;
                 };
                 let place = [centre.x, centre.y, centre.z, radius];
-                let tip = "Make it just large enough for the nearest path";
+                let tip = "Make it just large enough to include the nearest path";
                 Some((format!("Widen {name}"), tip, FilterCommand::Move(number as u32, place)))
             });
             let delete = (format!("Delete {name}"), drop, FilterCommand::Delete(number as u32));
@@ -172,7 +173,7 @@ fn remedies(settings: &FilterSettings, failed: &Shortfall) -> Vec<Remedy> {
             let wider = leaf.zip(failed.by).and_then(|(leaf, by)| {
                 let (label, wide) = leaf.widened(by)?;
                 let wider = filter.clone().with_leaf(number, |_| Some(wide));
-                let tip = "Ask for no more than the nearest path has";
+                let tip = "Relax it just enough to include the nearest path";
                 Some((label.to_owned(), tip, set(wider)))
             });
             let without = filter.clone().with_leaf(number, |_| None);
@@ -182,7 +183,7 @@ fn remedies(settings: &FilterSettings, failed: &Shortfall) -> Vec<Remedy> {
         Some(FilterSource::Kept(number)) => {
             let Some(kept) = settings.kept().get(number) else { return Vec::new() };
             let off = FilterCommand::Use(Switch::Off, kept.name.clone());
-            vec![(format!("Switch off {}", kept.name), "A kept filter asks for this", off)]
+            vec![(format!("Switch off {}", kept.name), "This is part of a kept filter", off)]
         }
         None => Vec::new(),
     }

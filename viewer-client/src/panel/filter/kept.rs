@@ -28,7 +28,7 @@ impl Kept {
         let any = !settings.text().text().is_empty() || !settings.selectors().is_empty();
         if !any {
             if settings.kept().is_empty() {
-                let text = "A filter can be kept under a name, and switched on again later.";
+                let text = "Keep a filter under a name to switch it on again later.";
                 ui.add(Label::new(RichText::new(text).small().weak()).wrap());
             }
             return;
@@ -46,11 +46,11 @@ impl Kept {
             let full = settings.kept().len() >= MOST_KEPT && name.as_ref().is_some_and(is_new);
             let keep = ui.add_enabled(name.is_some() && !full, Button::new("Keep"));
             let keep = keep
-                .on_hover_text("Keep text and spheres under this name")
+                .on_hover_text("Keep the text and spheres under this name")
                 .on_disabled_hover_text(if full {
-                    "There is no room for more; forget one first"
+                    "No more filters can be kept; delete one first"
                 } else {
-                    "Write a name of at most 40 letters"
+                    "Enter a name of at most 40 characters"
                 });
             if let Some(name) = name.filter(|_| keep.clicked() || (entered && !full)) {
                 filter(FilterCommand::Keep(name));
@@ -65,17 +65,17 @@ fn line(ui: &mut Ui, kept: &KeptFilter, filter: &mut impl FnMut(FilterCommand)) 
     let name = || kept.name.clone();
     ui.horizontal(|ui| {
         let mut on = kept.on;
-        let tip = format!("Holds beside what is above\n{}", kept.text());
+        let tip = format!("Apply it in addition to the filter above\n{}", kept.text());
         if ui.checkbox(&mut on, "").on_hover_text(tip).changed() {
             filter(FilterCommand::Use(Switch::to(on), name()));
         }
         let not = Button::selectable(kept.inverted, "not").small();
-        if ui.add(not).on_hover_text("Want the opposite").clicked() {
+        if ui.add(not).on_hover_text("Negate this").clicked() {
             filter(FilterCommand::Reverse(Switch::Toggle, name()));
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let forget = ui.small_button("×").on_hover_text(format!("Forget {}", kept.name));
-            let tip = "Write it into the text above, to change it";
+            let forget = ui.small_button("×").on_hover_text(format!("Delete {}", kept.name));
+            let tip = "Load it into the text above to change it";
             let edit = ui.small_button("Edit").on_hover_text(tip);
             if forget.clicked() {
                 filter(FilterCommand::Forget(name()));
@@ -88,7 +88,7 @@ fn line(ui: &mut Ui, kept: &KeptFilter, filter: &mut impl FnMut(FilterCommand)) 
                 let (name, tip) = match kept.complaint() {
                     Some(error) => {
                         let color = theme::bad(ui.visuals().dark_mode);
-                        let tip = format!("Left out: {}\n{}", error.message, kept.text());
+                        let tip = format!("Ignored: {}\n{}", error.message, kept.text());
                         (name.color(color).strikethrough(), tip)
                     }
                     None => (name, kept.text().to_string()),

@@ -21,8 +21,8 @@ use crate::world::World;
 const PRESETS: [(&str, &str, &str); 5] = [
     ("All", "", "Every path"),
     ("Direct", "lpe \"CDL\"", "Direct light on something diffuse"),
-    ("Indirect", "lpe \"CD{2,}L\"", "Light that went from one diffuse surface to another"),
-    ("Caustics", "lpe \"C.*DS+L\"", "Light that mirrors or glass threw on something diffuse"),
+    ("Indirect", "lpe \"CD{2,}L\"", "Light that travelled from one diffuse surface to another"),
+    ("Caustics", "lpe \"C.*DS+L\"", "Light focused onto something diffuse by mirrors or glass"),
     ("SDS", "lpe \"CS+DS+L\"", "Caustics seen in a mirror or through glass"),
 ];
 
@@ -54,10 +54,10 @@ impl Section for FilterPanel {
     const NAME: PanelName = PanelName::Filter;
     const TITLE: &'static str = "Filter";
     const HELP: &'static [&'static str] = &[
-        "Only the paths that the filter wants are sent. Take a preset, write the text, put \
-         conditions together below it, or make spheres in the view: all of it is one filter.",
-        "What holds can be kept under a name. Matched and seen are exact; the energy is the share \
-         of the image's light that matching paths carry.",
+        "The daemon only sends paths that match the filter. Choose a preset, type the text, \
+        combine conditions below it, or place spheres in the view: together they are one filter.",
+        "Keep saves the filter under a name. The counts are exact; the energy is the share of the \
+        image's light carried by matching paths.",
     ];
 
     fn text(world: &World<'_>) -> String {
@@ -95,16 +95,16 @@ fn presets(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterCommand
 fn switches(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterCommand)) {
     let settings = &world.settings.filter;
     ui.horizontal_wrapped(|ui| {
-        let tip = "Without it, all paths are shown";
+        let tip = "If off, all paths are shown";
         if let Some(switch) = toggle(ui, "On", tip, !settings.is_off()) {
             filter(FilterCommand::Enable(switch));
         }
-        let tip = "Show what text and spheres would leave out";
+        let tip = "Show the paths that the text and spheres would leave out";
         if let Some(switch) = toggle(ui, "Invert", tip, settings.is_inverted()) {
             filter(FilterCommand::Invert(switch));
         }
         let clear = Button::new("Clear");
-        let tip = "Show all paths, and forget text and spheres";
+        let tip = "Show all paths: remove the text and the spheres";
         let any =
             !settings.whole().wants_all() || settings.is_off() || settings.complaint().is_some();
         if ui.add_enabled(any, clear).on_hover_text(tip).clicked() {
@@ -123,8 +123,9 @@ fn selectors(ui: &mut Ui, world: &World<'_>, filter: &mut impl FnMut(FilterComma
         let [start, end, any, all] =
             keys::selectors(world.settings.window.keys).map(|(key, _)| key.name());
         let text = format!(
-            "Point at a surface and press {start} for a sphere in which paths start, {end} for one \
-             in which they end, {any} for any and {all} for all through which they pass.",
+            "Point at a surface and press {start} for a sphere in which paths start, {end} for \
+            one in which they end, {any} for one in which they have a vertex, and {all} for one \
+            that is required as well.",
         );
         ui.add(Label::new(RichText::new(text).small().weak()).wrap());
         return;

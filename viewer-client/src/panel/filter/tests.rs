@@ -9,7 +9,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::*;
-use crate::panel::tests::{Stage, shows};
+use crate::panel::tests::{Fixture, shows};
 use crate::source::model::Model;
 use crate::synthetic::{mesh, welcome};
 use crate::value::{Sphere, Switch};
@@ -19,15 +19,15 @@ fn set(text: &str) -> FilterCommand {
 }
 
 /// The panel before a scene with names.
-fn stage() -> Stage {
-    let mut stage = Stage::new(FilterPanel::default());
-    stage.status.welcome(welcome());
-    stage.model = Model::new(mesh());
-    stage
+fn fixture() -> Fixture {
+    let mut fixture = Fixture::new(FilterPanel::default());
+    fixture.status.welcome(welcome());
+    fixture.model = Model::new(mesh());
+    fixture
 }
 
 /// Does what the panel asked for, as the viewer does; answers it.
-fn obey(harness: &mut Harness<'_, Stage>) -> Vec<Command> {
+fn obey(harness: &mut Harness<'_, Fixture>) -> Vec<Command> {
     harness.run_steps(3);
     let said = std::mem::take(&mut harness.state_mut().said);
     for command in &said {
@@ -39,28 +39,28 @@ fn obey(harness: &mut Harness<'_, Stage>) -> Vec<Command> {
     said
 }
 
-fn click(harness: &mut Harness<'_, Stage>, label: &str) -> Vec<Command> {
+fn click(harness: &mut Harness<'_, Fixture>, label: &str) -> Vec<Command> {
     harness.get_by_label(label).click();
     obey(harness)
 }
 
 /// A filter of a sphere and a text, which no path passes.
-fn fruitless() -> Stage {
-    let mut stage = stage();
+fn fruitless() -> Fixture {
+    let mut fixture = fixture();
     let sphere = Sphere { kind: SelectorKind::Any, place: [0.0, 1.0, 0.0, 0.5] };
-    stage.settings.filter.apply(&FilterCommand::Add(sphere));
-    stage.settings.filter.apply(&set("edges >= 4 and dwell > 2"));
+    fixture.settings.filter.apply(&FilterCommand::Add(sphere));
+    fixture.settings.filter.apply(&set("edges >= 4 and dwell > 2"));
     let path = PathId { chain: ChainId(3), epoch: 0, step: 77 };
     let failed =
         vec![Shortfall { condition: 0, by: Some(0.25) }, Shortfall { condition: 1, by: Some(2.0) }];
     let nearest = Some(NearestMiss { path, asked: 3, failed });
     let conditions = vec![0, 250, 900];
     let counts = FilterCounts { seen: 1000, conditions, nearest, ..Default::default() };
-    stage.status.statistics(Statistics { filter: counts, ..Statistics::default() });
+    fixture.status.statistics(Statistics { filter: counts, ..Statistics::default() });
     let conditions = ["any in sphere(0, 1, 0, 0.5)", "edges >= 4", "dwell > 2"];
     let conditions = conditions.map(str::to_owned).to_vec();
-    stage.status.filter = Some(FilterReply { conditions, ..FilterReply::default() });
-    stage
+    fixture.status.filter = Some(FilterReply { conditions, ..FilterReply::default() });
+    fixture
 }
 
 #[test]
@@ -119,21 +119,21 @@ fn what_is_wanted_follows_every_switch() {
 }
 
 /// Writes into the text of the filter.
-fn write(harness: &mut Harness<'_, Stage>, text: &str) {
+fn write(harness: &mut Harness<'_, Fixture>, text: &str) {
     harness.get_by_label("Text of the filter").focus();
     harness.run_steps(2);
     harness.get_by_label("Text of the filter").type_text(text);
     harness.run_steps(3);
 }
 
-fn press(harness: &mut Harness<'_, Stage>, key: Key) -> Vec<Command> {
+fn press(harness: &mut Harness<'_, Fixture>, key: Key) -> Vec<Command> {
     harness.key_press(key);
     obey(harness)
 }
 
 #[test]
 fn words_and_names_are_completed_by_tab() {
-    let mut harness = stage().harness();
+    let mut harness = fixture().harness();
     harness.run_steps(3);
     write(&mut harness, "any on ma");
     assert!(shows(&harness, "material"), "a word of the grammar");
@@ -145,12 +145,12 @@ fn words_and_names_are_completed_by_tab() {
     let set = set("any on material \"wall\"");
     // It is asked for in every frame until it is done.
     let said = press(&mut harness, Key::Enter);
-    assert_eq!(said.first(), Some(&Command::Filter(set)), "Enter sets it");
+    assert_eq!(said.first(), Some(&Command::Filter(set)), "Press Enter to apply");
 }
 
 #[test]
 fn a_mistake_is_told_with_its_place_and_changes_nothing() {
-    let mut harness = stage().harness();
+    let mut harness = fixture().harness();
     harness.run_steps(3);
     write(&mut harness, "edges >= 3 and any in spere(0, 0, 0, 1)");
     assert!(shows(&harness, "Character 23"), "where");
@@ -162,18 +162,18 @@ fn a_mistake_is_told_with_its_place_and_changes_nothing() {
 
 #[test]
 fn two_vertices_that_were_meant_to_be_one_are_pointed_out() {
-    let mut stage = stage();
-    stage.settings.filter.apply(&set("lpe \"CRDL\""));
-    let mut harness = stage.harness();
+    let mut fixture = fixture();
+    fixture.settings.filter.apply(&set("lpe \"CRDL\""));
+    let mut harness = fixture.harness();
     harness.run_steps(3);
     assert!(shows(&harness, "`<RD>` is one vertex"), "a hint");
 }
 
 #[test]
 fn filters_are_kept_used_turned_written_and_forgotten() {
-    let mut stage = stage();
-    stage.settings.filter.apply(&set("edges >= 4"));
-    let mut harness = stage.harness();
+    let mut fixture = fixture();
+    fixture.settings.filter.apply(&set("edges >= 4"));
+    let mut harness = fixture.harness();
     harness.run_steps(3);
     harness.get_by_label("Name of the filter").focus();
     harness.run_steps(2);

@@ -70,7 +70,8 @@ impl Draft {
             .code_editor()
             .event_filter(KEYS);
         let response = ui.add(edit).on_hover_text(
-            "The filter's text. Enter sets it, Tab takes what is offered, Escape takes back.",
+            "The text of the filter. Enter applies it, Tab accepts a completion, Escape discards \
+            changes.",
         );
         response.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Text of the filter")
@@ -95,7 +96,7 @@ impl Draft {
             Some(error) => complaint(ui, error, &self.text),
             None if is_done => filter(FilterCommand::Set(FilterText::read(self.text.trim()))),
             None => {
-                ui.label(RichText::new("Enter sets it").small().weak());
+                ui.label(RichText::new("Press Enter to apply").small().weak());
             }
         }
     }
@@ -161,7 +162,7 @@ impl Draft {
         let Some(completion) = completion else { return false };
         let mut clicked = None;
         let shown = Popup::from_response(response)
-            .id(Id::unique("what may come next"))
+            .id(Id::unique("possible continuations"))
             .open(true)
             .align(RectAlign::BOTTOM_START)
             .close_behavior(PopupCloseBehavior::IgnoreClicks)
@@ -178,8 +179,8 @@ impl Draft {
                     }
                 }
                 let hint = match completion.choices.len().saturating_sub(MOST) {
-                    0 => "Tab takes it, Escape closes".to_owned(),
-                    more => format!("Tab takes it; {more} more by typing"),
+                    0 => "Tab accepts, Escape closes".to_owned(),
+                    more => format!("Tab accepts; type for {more} more"),
                 };
                 ui.label(RichText::new(hint).small().weak());
             });
@@ -201,8 +202,8 @@ fn key_for_choices(ui: &Ui) -> Option<Key> {
 fn misfit(ui: &mut Ui, world: &World<'_>) {
     if let Some(error) = world.settings.filter.complaint() {
         let color = theme::bad(ui.visuals().dark_mode);
-        let text = format!("Left out: {}", error.message);
-        let tip = "The text stays, and holds again on a scene that has what it names";
+        let text = format!("Ignored: {}", error.message);
+        let tip = "The text stays, and applies again on a scene that has what it names";
         let label = egui::Label::new(RichText::new(text).small().color(color)).wrap();
         ui.add(label).on_hover_text(tip);
     }

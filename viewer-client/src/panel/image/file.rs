@@ -41,12 +41,12 @@ impl Files {
             .show(ui, |ui| self.compare(ui, world, commands));
         CollapsingHeader::new("Save and send").show(ui, |ui| {
             let line = Line { hint: "image.exr or .png", button: "Save" };
-            let tip = ".exr saves the radiance with its metadata, .png what is shown";
+            let tip = ".exr saves the radiance with metadata, .png the image as displayed";
             if line.show(ui, &mut self.target, tip) {
                 commands.push(Command::Image(ImageCommand::Save(self.target.clone())));
             }
             let line = Line { hint: "HOST:PORT", button: "To tev" };
-            if line.show(ui, &mut self.tev, "Show the image in a running tev") {
+            if line.show(ui, &mut self.tev, "Send the image to a running tev") {
                 commands.push(Command::Image(ImageCommand::Tev(self.tev.clone())));
             }
         });
@@ -54,7 +54,7 @@ impl Files {
 
     fn compare(&mut self, ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
         let line = Line { hint: "reference.exr; or drop one here", button: "Load" };
-        let tip = "An image of the same scene and size, such as one of `tracer-server render`";
+        let tip = "An image of the same scene and size, such as one made by `tracer-server render`";
         if line.show(ui, &mut self.reference, tip) {
             commands.push(Command::Image(ImageCommand::Reference(self.reference.clone())));
         }
@@ -69,7 +69,7 @@ impl Files {
         ui.horizontal(|ui| {
             ui.add(egui::Label::new(RichText::new(&reference.name).small()).truncate())
                 .on_hover_text(&reference.name);
-            if ui.small_button("Forget").on_hover_text("Compare with nothing").clicked() {
+            if ui.small_button("Forget").on_hover_text("Remove the reference").clicked() {
                 commands.push(Command::Image(ImageCommand::Forget));
             }
         });
@@ -78,14 +78,17 @@ impl Files {
             looks(ui, world, commands);
         } else {
             let size = format!("{} × {}", reference.width, reference.height);
-            ui.label(format!("It has {size} pixels, unlike the image; render it in its size."));
+            ui.label(format!(
+                "It has {size} pixels, unlike the image; render it at the size of the image."
+            ));
         }
     }
 }
 
 /// How different image and reference look, once somebody wants to know.
 fn looks(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
-    let tip = "FLIP: the mean difference that a person sees who flips between the two, from 0 to 1";
+    let tip = "FLIP: the mean difference that a person perceives when flipping between the two \
+        images, from 0 to 1";
     ui.horizontal(|ui| {
         ui.label(RichText::new("FLIP").weak()).on_hover_text(tip);
         let shown = world.settings.image.layer == Layer::Flip;
@@ -94,11 +97,11 @@ fn looks(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
                 let pixels = map.errors.len().max(1) as f64;
                 let effort = format::count(map.steps as f64 / pixels);
                 let text = RichText::new(format!("{:.4}", map.mean)).monospace();
-                ui.label(text).on_hover_text(format!("At {effort} mutations a pixel"));
+                ui.label(text).on_hover_text(format!("At {effort} mutations per pixel"));
             }
             None if shown => {
                 ui.spinner();
-                ui.label(RichText::new("takes some seconds").small().weak());
+                ui.label(RichText::new("This takes a few seconds").small().weak());
             }
             None => {
                 if ui.small_button("Measure").on_hover_text(tip).clicked() {
@@ -119,9 +122,9 @@ fn numbers(ui: &mut Ui, comparison: &Comparison) {
         };
         let tip = "Mean of (x - r)² / (r² + 0.01) over pixels and channels";
         line("relMSE", format::value(relative_mse as f32), tip);
-        let tip = "The same without the worst pixel in a hundred: noise without fireflies";
+        let tip = "The same without the worst 1 % of pixels: noise without fireflies";
         line("relMSE, best 99 %", format::value(trimmed as f32), tip);
-        let tip = "Sum of the image over that of the reference; far from 1 something is wrong";
+        let tip = "Sum of the image over that of the reference; far from 100 %, something is wrong";
         line("energy", format!("{:.2} %", 100.0 * mean_ratio), tip);
     });
 }

@@ -59,7 +59,7 @@ impl Panel for ImagePanel {
             empty_state(
                 ui,
                 "No image yet",
-                "It appears once the daemon has found where the light is and its chains have begun.",
+                "It appears once the daemon has found the light and its chains have started.",
             );
             return;
         }
@@ -79,7 +79,7 @@ impl Panel for ImagePanel {
         tone(ui, world, commands);
         zoom(ui, world, commands);
         let text = format!(
-            "{width} × {height}, {} mutations a pixel",
+            "{width} × {height}, {} mutations per pixel",
             format::count(world.film.steps() as f64 / (width * height) as f64)
         );
         ui.label(RichText::new(text).small().weak());
@@ -91,10 +91,9 @@ impl Section for ImagePanel {
     const NAME: PanelName = PanelName::Image;
     const TITLE: &'static str = "Image";
     const HELP: &'static [&'static str] = &[
-        "The image that the chains have made so far. The wheel comes closer, the right button \
-         shifts.",
-        "Click a pixel, or drag a rectangle: then only paths to there are sent. Ctrl+C copies the \
-         raw values of the pixel under the cursor.",
+        "The image that the chains have rendered so far. The wheel zooms, the right button pans.",
+        "Click a pixel, or drag a rectangle, to see only the paths that end there. Ctrl+C copies \
+        the raw values of the pixel under the cursor.",
     ];
 
     fn applies(world: &World<'_>) -> bool {
@@ -106,7 +105,7 @@ impl Section for ImagePanel {
         let [width, height] = world.film.size();
         lines.put(format_args!("pixels\t{width} × {height}"));
         let effort = world.film.steps() as f64 / (width * height).max(1) as f64;
-        lines.put(format_args!("mutations a pixel\t{effort:.1}"));
+        lines.put(format_args!("mutations per pixel\t{effort:.1}"));
         lines.put(format_args!("exposure\t{} EV", world.settings.image.exposure.stops()));
         let Some(reference) = world.reference else { return lines.text() };
         lines.put(format_args!("reference\t{}", reference.name));
@@ -176,7 +175,7 @@ fn region_line(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
         let columns = ((u1 - u0) * width).round().max(1.0);
         let rows = ((v1 - v0) * height).round().max(1.0);
         ui.label(format!("Paths to {columns:.0} × {rows:.0} pixels"))
-            .on_hover_text("The filter wants paths that reached this part of the image only");
+            .on_hover_text("The filter only shows paths that end in this part of the image");
         if ui.button("All").on_hover_text("Paths to the whole image").clicked() {
             let text = region::with_region(world.settings.filter.text(), None);
             commands.push(Command::Filter(FilterCommand::Set(text)));
@@ -211,7 +210,7 @@ pub(super) fn layer_button(
     let missing = (layer.compares() && world.reference.is_none())
         || (layer.is_map() && world.diagnostics().is_none());
     let remedy = if layer.is_map() {
-        "The daemon has not told yet how the chains do"
+        "The daemon has not reported on the chains yet"
     } else {
         "Load a reference first: see Compare below"
     };
@@ -264,7 +263,8 @@ fn tone(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
 fn zoom(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
     let zoom = world.settings.image.zoom;
     ui.horizontal(|ui| {
-        let fit = ui.selectable_label(zoom.is_none(), "Fit").on_hover_text("As wide as the panel");
+        let fit =
+            ui.selectable_label(zoom.is_none(), "Fit").on_hover_text("Fit the image to the panel");
         if fit.clicked() {
             commands.push(Command::Image(ImageCommand::Fit));
         }
@@ -272,14 +272,14 @@ fn zoom(ui: &mut Ui, world: &World<'_>, commands: &mut Vec<Command>) {
             let label = format!("{factor:.0}:1");
             let chosen = ui
                 .selectable_label(zoom == Some(factor), label)
-                .on_hover_text("Screen points a pixel of the film; the wheel does it, too");
+                .on_hover_text("Screen points per pixel of the film; the wheel changes it, too");
             if chosen.clicked() {
                 commands.push(Command::Image(ImageCommand::Zoom(factor)));
             }
         }
         let auto = ui
             .selectable_label(!world.settings.image.exposure.is_chosen(), "Auto exposure")
-            .on_hover_text("Brightness that suits the scene");
+            .on_hover_text("Choose a brightness that suits the scene");
         if auto.clicked() {
             commands.push(Command::Image(ImageCommand::Auto));
         }

@@ -14,7 +14,8 @@ const DIGITS: usize = 8;
 pub(super) fn show(ui: &mut Ui, world: &World<'_>, hovered: Option<[usize; 2]>) {
     let pixel = hovered.and_then(|[x, y]| Some((x, y, world.film.pixel(x, y)?)));
     let Some((x, y, rgb)) = pixel else {
-        let hint = "Point at a pixel for its values; click it, or drag a rectangle, for its paths.";
+        let hint = "Point at a pixel to see its values; click it, or drag a rectangle, to see its \
+            paths.";
         let has_map = world.settings.image.layer.is_map();
         let lines = 1 + usize::from(world.reference.is_some()) + usize::from(has_map);
         let font = egui::TextStyle::Monospace.resolve(ui.style());

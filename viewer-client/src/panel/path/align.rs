@@ -1,6 +1,6 @@
 //! Numbers below each other, in a font whose letters are all as wide.
 
-/// A number with so many decimals; what rounds to zero has no sign.
+/// A number with this many decimals; anything that rounds to zero has no sign.
 pub(super) fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {

@@ -1,7 +1,7 @@
-//! What a file of paths tells of one of them, and what it does not.
+//! What a file of paths says about one of them, and what it does not.
 
 use super::table::{Column, Line, Table, color};
-use crate::source::dump::{Act, Outcome, Walked};
+use crate::source::dump::{DumpPath, Outcome, Walked};
 use crate::source::selection::Selection;
 use crate::source::units::Measure;
 use crate::value::format;
@@ -11,27 +11,28 @@ use crate::world::World;
 pub(super) const UNKNOWN: &str = "–";
 
 /// The record of the selected path, where it is one of the file that is played.
-pub(super) fn record<'a>(world: &World<'a>, selection: &Selection) -> Option<&'a Act> {
-    let acts = &world.playback?.stage().acts;
-    acts.iter()
-        .find(|act| act.header.id == selection.header.id && act.vertices == selection.vertices)
+pub(super) fn record<'a>(world: &World<'a>, selection: &Selection) -> Option<&'a DumpPath> {
+    let paths = &world.playback?.dump().paths;
+    paths
+        .iter()
+        .find(|path| path.header.id == selection.header.id && path.vertices == selection.vertices)
 }
 
 /// True where the file has densities and weights of the path.
-pub(super) fn tells_numbers(record: &Act) -> bool {
+pub(super) fn tells_numbers(record: &DumpPath) -> bool {
     record.numbers.iter().any(|n| n.from_light.is_some() || n.from_eye.is_some())
 }
 
 /// The acceptance probability of the proposal that made it.
-pub(super) fn acceptance(record: Option<&Act>) -> String {
+pub(super) fn acceptance(record: Option<&DumpPath>) -> String {
     match record.map(|record| record.outcome) {
         Some(Outcome::Accepted(a)) => format!("a = {a:.4}"),
         _ => UNKNOWN.to_owned(),
     }
 }
 
-/// How long the chain stayed; only a file that tells of every step knows.
-pub(super) fn stay(record: Option<&Act>) -> String {
+/// How long the chain stayed; known only for a file that reports every step.
+pub(super) fn stay(record: Option<&DumpPath>) -> String {
     match record.filter(|record| record.outcome != Outcome::Recorded) {
         Some(record) => format::steps(u64::from(record.header.dwell)),
         None => UNKNOWN.to_owned(),
@@ -39,7 +40,7 @@ pub(super) fn stay(record: Option<&Act>) -> String {
 }
 
 /// A row a vertex.
-pub(super) fn table(record: &Act) -> Table {
+pub(super) fn table(record: &DumpPath) -> Table {
     let density = |walked: Option<Walked>| {
         walked.map_or_else(|| UNKNOWN.to_owned(), |walked| format::exact(walked.pdf))
     };
@@ -49,15 +50,15 @@ pub(super) fn table(record: &Act) -> Table {
     let numbers = || record.numbers.iter();
     let of_density = |side: &str| {
         format!(
-            "Density of making the vertex from the {side} side, per square unit of the scene file at \
-             the vertex itself, as Mitsuba has it; a probability behind a mirror or glass, and at the \
-             lens"
+            "Density of generating the vertex from the {side} side, per square unit of the scene \
+            file at the vertex itself, as Mitsuba defines it; a probability after a mirror or \
+            glass, and at the lens"
         )
     };
     let of_weight = |side: &str| {
         format!(
-            "Weight from the {side} side, in luminance: value over density of the step that makes \
-             the vertex"
+            "Weight from the {side} side, in luminance: value over density of the step that \
+            generates the vertex"
         )
     };
     Table {
@@ -72,13 +73,13 @@ pub(super) fn table(record: &Act) -> Table {
 }
 
 /// All of one vertex.
-pub(super) fn lines(record: &Act, index: usize) -> Vec<Line> {
+pub(super) fn lines(record: &DumpPath, index: usize) -> Vec<Line> {
     let Some(numbers) = record.numbers.get(index) else { return Vec::new() };
     let sides = [("From light", numbers.from_light), ("From eye", numbers.from_eye)];
     let lines = sides.into_iter().map(|(side, walked)| {
         let text = walked.map_or_else(|| UNKNOWN.to_owned(), told);
-        let tip = "As the file has it: density of making the vertex from this side, and value over \
-                   density in red, green and blue";
+        let tip = "As the file gives it: density of generating the vertex from this side, and \
+            value over density in red, green and blue";
         (side, text, tip)
     });
     lines.collect()

@@ -1,4 +1,4 @@
-//! What the daemon tells of the vertices of a path: throughputs, densities, geometry terms.
+//! What the daemon reports about the vertices of a path: throughputs, densities, geometry terms.
 
 use common::{PathDetail, Rgb};
 
@@ -7,27 +7,24 @@ use crate::source::units::{Measure, Start};
 use crate::value::format;
 
 /// What the column `β light` holds.
-const BETA_LIGHT: &str = "Luminance that a walk from the light carries when it has come here. At x0 that is \
-    the area of the lamp over the probability of its choice, in square units of the \
-    scene file (one over the density of the start, for lights without a surface), \
-    from x1 on it is flux: radiance times square unit times sr";
+const BETA_LIGHT: &str = "Luminance that a walk from the light carries when it arrives here. At \
+    x0 this is the area of the lamp over the probability of choosing it, in square units of the \
+    scene file (one over the density of the start, for lights without a surface); from x1 on it \
+    is flux: radiance times square unit times sr";
 /// What the column `β eye` holds.
-const BETA_EYE: &str = "Luminance that a walk from the eye carries when it has come here: reflectances \
-    and the like, without a unit; the whole film counts as one";
+const BETA_EYE: &str = "Luminance that a walk from the eye carries when it arrives here: a \
+    product of reflectances and the like, without a unit; the whole film counts as one";
 /// What the column `p light` holds.
-const P_LIGHT: &str = "Density of making the vertex from the light side: of x0 per square unit of the \
-    scene file, of the others per sr (solid angle at the vertex before), and a \
-    probability behind a mirror or glass. On a point or the sun x0 has a \
-    probability, in the sky a density per sr; x1 has one per square unit of a disk \
-    behind sun and sky";
+const P_LIGHT: &str = "Density of generating the vertex from the light side: per square unit of \
+    the scene file for x0, per sr for the others (solid angle at the vertex before), and a \
+    probability after a mirror or glass. On a point light or the sun x0 has a probability, in the \
+    sky a density per sr; after sun or sky, x1 has a density per square unit of a disk";
 /// What the column `p eye` holds.
-const P_EYE: &str = "Density of making the vertex from the eye side, per sr (solid angle at the \
-    vertex after); a probability behind a mirror or glass; per film for the last \
-    two";
+const P_EYE: &str = "Density of generating the vertex from the eye side, per sr (solid angle at \
+    the vertex after); a probability after a mirror or glass; per film for the last two";
 /// What the column `G` holds.
 const G: &str = "Geometry term of the edge to the next vertex, cos cos / r², per square unit of \
-    the scene file; at the lens with film area per solid angle in the place of its \
-    cosine";
+    the scene file; at the lens with film area per solid angle in place of the cosine";
 
 /// A row a vertex.
 pub(super) fn table(detail: &PathDetail) -> Table {
@@ -59,11 +56,11 @@ pub(super) fn lines(path: Described<'_>, detail: &PathDetail, index: usize) -> V
         if pdf > 0.0 {
             format!("p {} {}   f/p {}", format::exact(pdf), measure.unit(), format::exact(weight))
         } else {
-            "no walk makes it".to_owned()
+            "no walk generates it".to_owned()
         }
     };
-    let tip = "Density of making it from this side, and value over density without colour, in the \
-               inverse unit; a square unit is one of the scene file";
+    let tip = "Density of generating it from this side, and value over density without colour, in \
+        the inverse unit; square units are those of the scene file";
     let light = Measure::from_light(index, vertices, start);
     let eye = Measure::from_eye(index, vertices);
     let mut lines = vec![
@@ -72,21 +69,22 @@ pub(super) fn lines(path: Described<'_>, detail: &PathDetail, index: usize) -> V
     ];
     if vertex.light_pdf > 0.0 {
         let tip = if index == 0 {
-            "Throughput of a walk from the light at its start, before its light is counted: area of \
-             the lamp over probability, in square units of the scene file"
+            "Throughput of a walk from the light at its start, before emission is counted: area \
+            of the lamp over probability, in square units of the scene file"
         } else {
-            "Throughput of a walk from the light that has come here: red, green, blue flux"
+            "Throughput of a walk from the light when it arrives here: red, green and blue flux"
         };
         lines.push(("β light", color(detail.light_throughput(index)), tip));
     }
     if vertex.eye_pdf > 0.0 {
-        let tip = "Throughput of a walk from the eye that has come here: red, green, blue; no unit";
+        let tip = "Throughput of a walk from the eye when it arrives here: red, green and blue, \
+            without a unit";
         lines.push(("β eye", color(detail.eye_throughput(index)), tip));
     }
     let tip = if index == 0 {
-        "Emission as the scene file has it: radiance, intensity or irradiance"
+        "Emission as in the scene file: radiance, intensity or irradiance"
     } else {
-        "What it gives to the path's colour: reflectance or transmittance"
+        "Its factor in the path's colour: reflectance or transmittance"
     };
     lines.push(("Colour", color(vertex.color), tip));
     if let Some(geometry) = detail.geometry.get(index) {

@@ -29,7 +29,7 @@ use crate::world::World;
 /// A daemon that has not answered for so long does not know the question.
 const PATIENCE: Duration = Duration::from_secs(5);
 /// Why a file of paths has a dash where a daemon has a number.
-const NOT_IN_FILE: &str = "A file of paths does not tell it";
+const NOT_IN_FILE: &str = "A file of paths does not give it";
 
 /// The selected path.
 #[derive(Debug, Default)]
@@ -43,7 +43,7 @@ impl Panel for PathPanel {
             empty_state(
                 ui,
                 "No path selected",
-                "Click one in the view; click again for the next one under the cursor.",
+                "Click a path in the view; click again for the next one under the cursor.",
             );
             return;
         };
@@ -66,8 +66,8 @@ impl Section for PathPanel {
     const NAME: PanelName = PanelName::Path;
     const TITLE: &'static str = "Selected path";
     const HELP: &'static [&'static str] = &[
-        "Everything that is known of the path that was clicked in the view. Click again there for \
-         the next one under the cursor.",
+        "Everything known about the path selected in the view. Click there again for the next one \
+        under the cursor.",
     ];
     const KEYS: &'static [Group] = &[Group::Paths];
 
@@ -81,18 +81,18 @@ fn headline(ui: &mut Ui, world: &World<'_>, path: Described<'_>) {
     ui.horizontal(|ui| {
         let class = RichText::new(selection.class()).monospace().strong().size(16.0);
         ui.add(Label::new(class))
-            .on_hover_text("Light first: L light, D diffuse, S specular, E eye");
+            .on_hover_text("From the light: L light, D diffuse, S specular, E eye");
         let (place, of) = selection.place;
         if of > 1 {
             let text = RichText::new(format!("{place} of {of} here")).small().weak();
-            ui.label(text).on_hover_text("Click again in the view for the next one there");
+            ui.label(text).on_hover_text("Click again in the view for the next path there");
         }
     });
     let is_silent = record.is_none_or(|record| record.outcome == Outcome::Recorded);
     if world.playback.is_some() && is_silent {
         let line = record.map_or_else(|| UNKNOWN.to_owned(), |record| record.line.to_string());
         let text = format!("Record of line {line}");
-        let tip = "The file does not tell which strategy, chain and step made it";
+        let tip = "The file does not say which strategy, chain and step produced it";
         ui.label(RichText::new(text).weak()).on_hover_text(tip);
         return;
     }
@@ -122,14 +122,14 @@ fn figures(ui: &mut Ui, world: &World<'_>, path: Described<'_>) {
     if in_file {
         row(ui, "Colour", NOT_IN_FILE, |ui| ui.label(mono(UNKNOWN.to_owned())));
     } else {
-        let tip = "Red, green, blue at unit luminance: what every splat of it carries";
+        let tip = "Red, green and blue at unit luminance: the colour of every splat of this path";
         row(ui, "Colour", tip, |ui| {
             swatch(ui, h.rgb);
             let [r, g, b] = h.rgb;
             ui.label(mono(format!("{r:.3}  {g:.3}  {b:.3}")))
         });
     }
-    let [width, height] = match world.playback.map(|playback| playback.stage().camera) {
+    let [width, height] = match world.playback.map(|playback| playback.dump().camera) {
         Some(camera) => [camera.width as usize, camera.height as usize],
         None => world.film.size(),
     };
@@ -150,8 +150,12 @@ fn figures(ui: &mut Ui, world: &World<'_>, path: Described<'_>) {
             "Shares of width and height, from the upper left corner",
         ),
         ("Accepted at", acceptance, "Acceptance probability of the proposal that made it"),
-        ("Stayed", stay, "Steps that the chain stayed here while shown"),
-        ("Length", format!("{length:.4}"), "All edges together, in the units of the scene file"),
+        ("Stayed", stay, "Steps that the chain stayed here while it was shown"),
+        (
+            "Length",
+            format!("{length:.4}"),
+            "Total length of all edges, in the units of the scene file",
+        ),
     ];
     for (label, value, tip) in lines {
         row(ui, label, tip, |ui| ui.label(mono(value)));
@@ -165,9 +169,9 @@ fn luminance(path: Described<'_>, in_file: bool) -> (String, &'static str) {
     }
     (
         format::exact(path.names.luminance(&path.selection.header)),
-        "What the path counts as one sample of a bidirectional path tracer, 1 / S(x). In the unit of \
-         the image: the mean over all samples is b, the image's mean luminance. It is not the value \
-         of its pixel, which many paths make together",
+        "The path's contribution as one sample of a bidirectional path tracer, 1 / S(x), in the \
+        unit of the image: the mean over all samples is b, the image's mean luminance. It is not \
+        the value of its pixel, to which many paths contribute",
     )
 }
 
@@ -191,19 +195,19 @@ fn buttons(ui: &mut Ui, world: &World<'_>, path: Described<'_>, commands: &mut V
         step(ui, "Vertex after", "Towards the camera (V)", VertexStep::Next);
         let explore = ui
             .add_enabled(world.playback.is_none(), Button::new("Explore"))
-            .on_hover_text("Perturb it step by step (Enter)")
+            .on_hover_text("Mutate it step by step in the explorer (Enter)")
             .on_disabled_hover_text(
-                "A file of paths has no daemon whose chain could explore; open the scene itself \
-                 with --scene",
+                "A file of paths has no daemon that could explore; open the scene itself with \
+                --scene",
             );
         if explore.clicked() {
             let seed = ExplorerCommand::Seed(Seed::Path(selection.header.id));
             commands.push(Command::Order(Order::Explorer(seed)));
         }
-        if ui.button("Copy").on_hover_text("Copy all this as text").clicked() {
+        if ui.button("Copy").on_hover_text("Copy all of this as text").clicked() {
             ui.ctx().copy_text(selection.text(names));
         }
-        if ui.button("Deselect").on_hover_text("Select no path (Escape)").clicked() {
+        if ui.button("Deselect").on_hover_text("Clear the selection (Escape)").clicked() {
             commands.push(Command::Path(PathCommand::Deselect));
         }
     });
@@ -214,17 +218,17 @@ fn without_numbers(ui: &mut Ui, world: &World<'_>, path: Described<'_>) {
     let selection = path.selection;
     let text = match &selection.detail {
         Detail::Known(_) => return,
-        Detail::Unasked => "Not asked for yet: select the path again.".to_owned(),
+        Detail::Unasked => "Not requested yet: select the path again.".to_owned(),
         Detail::Asked(at) => {
             let waited = world.now.saturating_duration_since(*at);
             if let Some(left) = PATIENCE.checked_sub(waited) {
                 ui.ctx().request_repaint_after(left);
-                "The daemon is asked.".to_owned()
+                "Waiting for the daemon.".to_owned()
             } else {
                 "The daemon does not answer; it may be older than this viewer.".to_owned()
             }
         }
-        Detail::Missing(why) => format!("Not known: {why}"),
+        Detail::Missing(why) => format!("Unknown: {why}"),
     };
     ui.add_space(6.0);
     let title = if path.record.is_some_and(file::tells_numbers) {

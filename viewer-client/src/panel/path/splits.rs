@@ -20,9 +20,9 @@ pub(super) fn show(ui: &mut Ui, path: Described<'_>, detail: &PathDetail) {
     ui.add_space(8.0);
     let title = RichText::new("Ways to make it, by weight").small().weak();
     ui.label(title).on_hover_text(
-        "A split makes the vertices left of the bar from the light, those right of it from the eye, \
-         and connects them. Its weight is 1 / C over the sum of all; C is what it counts where it makes \
-         the path by itself.",
+        "A split generates the vertices left of the bar from the light, those right of it from \
+        the eye, and connects them. Its weight is 1 / C over the sum for all splits; C is its \
+        contribution if it were the only way to generate the path.",
     );
     for light in 0..detail.reciprocals.len() {
         bar(ui, path, detail, light);
@@ -79,9 +79,12 @@ fn explain(ui: &mut Ui, detail: &PathDetail, light: usize) {
     ui.label(match light {
         0 => "The walk from the eye hits the light".to_owned(),
         light if light == k => {
-            "All but the lens from the light, then connected to the lens".to_owned()
+            "Everything but the lens is generated from the light, then connected to the lens"
+                .to_owned()
         }
-        light => format!("x0 to x{} from the light, connected to x{light}", light - 1),
+        light => {
+            format!("x0 to x{} are generated from the light, then connected to x{light}", light - 1)
+        }
     });
     let Some(&reciprocal) = detail.reciprocals.get(light) else { return };
     if reciprocal > 0.0 {
@@ -90,6 +93,9 @@ fn explain(ui: &mut Ui, detail: &PathDetail, light: usize) {
         ui.label(RichText::new(text).monospace());
         ui.label(RichText::new(format!("weight {:.6}", detail.share(light))).monospace());
     } else {
-        ui.label("It cannot make the path: an end of the connection is specular, or has no size");
+        ui.label(
+            "This split cannot generate the path: an end of the connection is specular, or \
+            has no size",
+        );
     }
 }

@@ -1,8 +1,8 @@
-//! What is told of the vertices of a path, before it is drawn.
+//! The contents of the table of a path's vertices, before it is drawn.
 
 use common::Rgb;
 
-use crate::source::dump::Act;
+use crate::source::dump::DumpPath;
 use crate::source::selection::{Names, Selection};
 use crate::value::format;
 
@@ -12,7 +12,7 @@ pub(super) struct Described<'a> {
     pub(super) selection: &'a Selection,
     pub(super) names: &'a Names<'a>,
     /// Its record, where it is one of a file of paths.
-    pub(super) record: Option<&'a Act>,
+    pub(super) record: Option<&'a DumpPath>,
 }
 
 /// A label, its value, and what that is.

@@ -38,14 +38,14 @@ pub(super) fn show(
         let tip = "What happens at each vertex, on what, and where";
         ui.selectable_value(columns, Columns::Places, "Places").on_hover_text(tip);
         let tip = if record.is_some() {
-            "Densities and weights, as the file tells them"
+            "Densities and weights, as given in the file"
         } else {
-            "Throughputs, densities and geometry terms, as the daemon knows them"
+            "Throughputs, densities and geometry terms, computed by the daemon"
         };
         ui.add_enabled_ui(detail.is_some() || record.is_some(), |ui| {
             ui.selectable_value(columns, Columns::Light, "Light")
                 .on_hover_text(tip)
-                .on_disabled_hover_text("What is below says why there are none");
+                .on_disabled_hover_text("The text below says why they are missing");
         });
     });
     // What is too wide for the side scrolls: it would widen the side with every frame.
@@ -117,8 +117,8 @@ fn places(ui: &mut Ui, path: Described<'_>, commands: &mut Vec<Command>) {
     let positions = triples(&rows, 3);
     Grid::new("places").num_columns(4).striped(true).spacing([10.0, 3.0]).show(ui, |ui| {
         title(ui, "", "");
-        title(ui, "event", "What scatters the light there");
-        title(ui, "on", "The object, or else the material");
+        title(ui, "event", "How the light is scattered there");
+        title(ui, "on", "The object or, if it has no name, the material");
         title(ui, "position", "x, y and z in the units of the scene file");
         ui.end_row();
         for (i, (vertex, text)) in selection.vertices.iter().zip(positions).enumerate() {
@@ -161,8 +161,8 @@ fn card(ui: &mut Ui, path: Described<'_>, index: usize) {
     let mut next = || rows.next().unwrap_or_default();
     let mut lines: Vec<Line> = vec![
         ("Position", next(), "In the units of the scene file"),
-        ("Normal", next(), "Geometric, on the front side; of length one"),
-        ("Event", vertex.event.name().to_owned(), "What scatters the light"),
+        ("Normal", next(), "Geometric unit normal on the front side"),
+        ("Event", vertex.event.name().to_owned(), "How the light is scattered"),
         ("Material", names.material(vertex).to_owned(), "Its name in the scene file"),
         ("Object", names.object(vertex).unwrap_or("–").to_owned(), "Its name in the scene file"),
     ];

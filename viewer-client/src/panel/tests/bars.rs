@@ -7,7 +7,7 @@ use egui::{Rect, Ui, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use super::{Stage, shows};
+use super::{Fixture, shows};
 use crate::command::{CloudCommand, Command, LayoutCommand, SessionCommand, WindowCommand};
 use crate::panel::{self, Panel, Placed, help, hint, menu, status};
 use crate::source::status::LinkState;
@@ -26,19 +26,19 @@ impl Panel for Whole {
 }
 
 /// A window of this size in points.
-fn window(stage: Stage, width: f32, height: f32) -> Harness<'static, Stage> {
-    let mut harness = stage.harness();
+fn window(fixture: Fixture, width: f32, height: f32) -> Harness<'static, Fixture> {
+    let mut harness = fixture.harness();
     harness.set_size(vec2(width, height));
     harness.run_steps(4);
     harness
 }
 
-fn whole(width: f32) -> Harness<'static, Stage> {
-    window(Stage::new(Whole(panel::all())), width, 480.0)
+fn whole(width: f32) -> Harness<'static, Fixture> {
+    window(Fixture::new(Whole(panel::all())), width, 480.0)
 }
 
 /// Where the view lies.
-fn view(harness: &Harness<'_, Stage>) -> Rect {
+fn view(harness: &Harness<'_, Fixture>) -> Rect {
     harness.get_by_role_and_label(WidgetRole::Canvas, "Viewport").rect()
 }
 
@@ -92,16 +92,16 @@ fn the_edge_of_a_side_is_dragged_from_both_sides_of_it() {
 #[test]
 fn menus_and_the_sheet_fit_a_low_window() {
     let height = 360.0;
-    let mut harness = window(Stage::new(menu::Menu::default()), 640.0, height);
+    let mut harness = window(Fixture::new(menu::Menu::default()), 640.0, height);
     harness.get_by_label("View").click();
     harness.run_steps(4);
     let bar = harness.get_by_label("View").rect();
     let line = harness.get_by_label("Filter").rect();
     assert!(line.top() >= bar.bottom(), "the bar is not covered");
     assert!(harness.query_by_label_contains("Quit").is_some(), "the last line is there");
-    let mut stage = Stage::new(help::Help);
-    stage.settings.window.help = true;
-    let mut harness = window(stage, 640.0, height);
+    let mut fixture = Fixture::new(help::Help);
+    fixture.settings.window.help = true;
+    let mut harness = window(fixture, 640.0, height);
     for label in ["Keys and mouse", "Close"] {
         let rect = harness.get_by_label(label).rect();
         assert!(rect.top() >= 0.0 && rect.bottom() <= height, "{label} is visible: {rect:?}");
@@ -120,15 +120,15 @@ fn menus_and_the_sheet_fit_a_low_window() {
 #[test]
 fn the_status_bar_tells_every_state() {
     let state = |link: LinkState| {
-        let mut stage = Stage::new(status::StatusBar);
-        stage.status.link = link;
-        let mut harness = stage.harness();
+        let mut fixture = Fixture::new(status::StatusBar);
+        fixture.status.link = link;
+        let mut harness = fixture.harness();
         harness.run_steps(3);
         harness
     };
     assert!(shows(&state(LinkState::Connecting), "Connecting to 127.0.0.1:50061"), "connecting");
     assert!(shows(&state(LinkState::Connected), "Connected to 127.0.0.1:50061"), "connected");
-    let mut silent = Stage::new(status::StatusBar);
+    let mut silent = Fixture::new(status::StatusBar);
     silent.status.link = LinkState::Connected;
     silent.status.statistics(common::Statistics::default());
     let start = Instant::now();
@@ -149,16 +149,16 @@ fn the_status_bar_tells_every_state() {
 
 #[test]
 fn menus_hold_every_key() {
-    let mut stage = Stage::new(menu::Menu::default());
-    stage.status.welcome(welcome());
-    let mut harness = stage.harness();
+    let mut fixture = Fixture::new(menu::Menu::default());
+    fixture.status.welcome(welcome());
+    let mut harness = fixture.harness();
     harness.run();
     assert!(shows(&harness, "a room"), "the scene's name");
     harness.get_by_label("Light").click();
     harness.run();
     harness.get_by_label("Paths").click();
     harness.run();
-    harness.get_by_label_contains("Forget every path").click();
+    harness.get_by_label_contains("Remove every path from the view").click();
     harness.run();
     let expected = [
         Command::Window(WindowCommand::Theme(ThemeChange::Toggle)),
@@ -169,9 +169,9 @@ fn menus_hold_every_key() {
 
 #[test]
 fn the_connection_menu_leads_back_and_passes_on() {
-    let mut stage = Stage::new(menu::Menu::default());
-    stage.recent = vec!["render-box:50061".to_owned(), "127.0.0.1:50061".to_owned()];
-    let mut harness = stage.harness();
+    let mut fixture = Fixture::new(menu::Menu::default());
+    fixture.recent = vec!["render-box:50061".to_owned(), "127.0.0.1:50061".to_owned()];
+    let mut harness = fixture.harness();
     harness.run();
     for label in ["The built-in daemon", "render-box:50061", "Copy link to this view", "Screenshot"]
     {
@@ -187,14 +187,14 @@ fn the_connection_menu_leads_back_and_passes_on() {
 
 #[test]
 fn the_first_steps_go_when_they_are_known() {
-    let mut stage = Stage::new(hint::Hint);
-    let mut harness = stage.harness();
+    let mut fixture = Fixture::new(hint::Hint);
+    let mut harness = fixture.harness();
     harness.run();
     assert!(!shows(&harness, "Got it"), "not for those who know");
-    stage = Stage::new(hint::Hint);
-    stage.settings.window.hint = true;
-    stage.model = crate::source::model::Model::new(crate::synthetic::mesh());
-    let mut harness = stage.harness();
+    fixture = Fixture::new(hint::Hint);
+    fixture.settings.window.hint = true;
+    fixture.model = crate::source::model::Model::new(crate::synthetic::mesh());
+    let mut harness = fixture.harness();
     harness.run();
     harness.get_by_label("Got it").click();
     harness.run();
@@ -204,9 +204,9 @@ fn the_first_steps_go_when_they_are_known() {
 
 #[test]
 fn the_help_sheet_lists_every_key() {
-    let mut stage = Stage::new(help::Help);
-    stage.settings.window.help = true;
-    let mut harness = stage.harness();
+    let mut fixture = Fixture::new(help::Help);
+    fixture.settings.window.help = true;
+    let mut harness = fixture.harness();
     harness.run_steps(4);
     for binding in crate::keys::bindings(crate::value::KeyPreset::Today) {
         assert!(shows(&harness, binding.help), "`{}` is missing", binding.help);

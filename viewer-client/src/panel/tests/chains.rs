@@ -4,7 +4,7 @@ use common::ChainState;
 use egui_kittest::kittest::Queryable as _;
 
 use super::image::image_stage;
-use super::{Stage, diagnosed, shows, statistics};
+use super::{Fixture, diagnosed, shows, statistics};
 use crate::command::{Command, ImageCommand};
 use crate::panel::hover::{self, Pointed};
 use crate::panel::{diagnostics, statistics as counts};
@@ -13,11 +13,11 @@ use crate::synthetic::welcome;
 
 #[test]
 fn statistics_show_rates_and_fates() {
-    let mut stage = Stage::new(counts::StatisticsPanel);
-    stage.status.welcome(welcome());
-    stage.status.statistics(statistics());
-    stage.status.link = LinkState::Connected;
-    let mut harness = stage.harness();
+    let mut fixture = Fixture::new(counts::StatisticsPanel);
+    fixture.status.welcome(welcome());
+    fixture.status.statistics(statistics());
+    fixture.status.link = LinkState::Connected;
+    let mut harness = fixture.harness();
     harness.run();
     for text in [
         "1.23 M",
@@ -42,12 +42,12 @@ fn statistics_show_rates_and_fates() {
 }
 
 /// Diagnostics of chains that have found an image.
-fn diagnosed_stage() -> Stage {
-    let mut stage = Stage::new(diagnostics::DiagnosticsPanel);
-    stage.film = image_stage(false).film;
-    stage.status.welcome(welcome());
-    stage.status.statistics(diagnosed());
-    stage
+fn diagnosed_stage() -> Fixture {
+    let mut fixture = Fixture::new(diagnostics::DiagnosticsPanel);
+    fixture.film = image_stage(false).film;
+    fixture.status.welcome(welcome());
+    fixture.status.statistics(diagnosed());
+    fixture
 }
 
 #[test]
@@ -55,7 +55,7 @@ fn chains_that_disagree_raise_an_alarm_that_leads_there() {
     let mut harness = diagnosed_stage().harness();
     harness.run();
     for text in [
-        "Chains disagree in 0.3 % of the image, R-hat to 1.37",
+        "Chains disagree in 0.3 % of the image, R-hat up to 1.37",
         "25.0 k",
         "steps for an independent one",
         "bidirectional",
@@ -64,7 +64,7 @@ fn chains_that_disagree_raise_an_alarm_that_leads_there() {
     ] {
         assert!(shows(&harness, text), "`{text}` is missing");
     }
-    for label in ["Show where", "Paths to the worst", "Acceptance", "Explore", "Show"] {
+    for label in ["Show where", "Paths to the worst tile", "Acceptance", "Explore", "Show"] {
         harness.get_by_label(label).click();
         harness.run();
     }
@@ -90,14 +90,14 @@ fn what_is_pointed_at_is_marked_elsewhere() {
     harness.get_by_label("DDD").hover();
     harness.run_steps(40);
     assert_eq!(hover::pointed(&harness.ctx), Some(Pointed::Stay(0)), "a long stay");
-    assert!(shows(&harness, "marked in the view"), "the tooltip says so");
+    assert!(shows(&harness, "highlighted in the view"), "the tooltip says so");
     harness.get_by_label("lens").hover();
     harness.run_steps(3);
     assert_eq!(hover::pointed(&harness.ctx), Some(Pointed::Strategy(1)), "a strategy");
     harness.get_by_label_contains("Chains disagree").hover();
     harness.run_steps(3);
     assert_eq!(hover::pointed(&harness.ctx), None, "neither");
-    let mut counted = Stage::new(counts::StatisticsPanel);
+    let mut counted = Fixture::new(counts::StatisticsPanel);
     counted.status.welcome(welcome());
     counted.status.statistics(statistics());
     let mut harness = counted.harness();
@@ -109,19 +109,19 @@ fn what_is_pointed_at_is_marked_elsewhere() {
 
 #[test]
 fn diagnostics_that_are_not_there_yet_say_so() {
-    let mut stage = Stage::new(diagnostics::DiagnosticsPanel);
-    stage.status.welcome(welcome());
+    let mut fixture = Fixture::new(diagnostics::DiagnosticsPanel);
+    fixture.status.welcome(welcome());
     let mut early = diagnosed();
     early.diagnostics = Some(std::sync::Arc::new(common::Diagnostics::default()));
-    stage.status.statistics(early);
-    let mut harness = stage.harness();
+    fixture.status.statistics(early);
+    let mut harness = fixture.harness();
     harness.run();
-    for text in ["Too early to tell", "Too few steps", "None yet"] {
+    for text in ["It is too early to tell", "There are too few steps", "None yet"] {
         assert!(shows(&harness, text), "`{text}` is missing");
     }
-    let mut stage = Stage::new(diagnostics::DiagnosticsPanel);
-    stage.status.statistics(statistics());
-    let mut harness = stage.harness();
+    let mut fixture = Fixture::new(diagnostics::DiagnosticsPanel);
+    fixture.status.statistics(statistics());
+    let mut harness = fixture.harness();
     harness.run();
     assert!(shows(&harness, "a newer one does"), "an older daemon tells no diagnostics");
 }

@@ -3,7 +3,7 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use super::Stage;
+use super::Fixture;
 use crate::command::{CameraCommand, CloudCommand, Command, SceneCommand};
 use crate::panel::{cloud, scene};
 use crate::value::Switch;
@@ -11,7 +11,7 @@ use crate::value::WindowSide;
 
 #[test]
 fn the_cloud_panel_speaks_in_commands() {
-    let mut harness = Stage::new(cloud::Cloud).harness();
+    let mut harness = Fixture::new(cloud::Cloud).harness();
     harness.run();
     harness.get_by_label("Freeze").click();
     harness.run();
@@ -26,29 +26,29 @@ fn the_cloud_panel_speaks_in_commands() {
 
 #[test]
 fn a_slider_at_rest_says_nothing() {
-    let mut stage = Stage::new(cloud::Cloud);
+    let mut fixture = Fixture::new(cloud::Cloud);
     // Values that no slider can show exactly.
-    stage.settings.cloud.width = 0.123_456;
-    stage.settings.cloud.fade = 1e9;
-    let mut harness = stage.harness();
+    fixture.settings.cloud.width = 0.123_456;
+    fixture.settings.cloud.fade = 1e9;
+    let mut harness = fixture.harness();
     harness.run();
     assert_eq!(harness.state().said, [], "rounding is not the user's hand");
 }
 
 #[test]
 fn long_numbers_do_not_widen_their_panel() {
-    let mut stage = Stage::new(cloud::Cloud);
-    stage.settings.cloud.fade = 1e7;
-    stage.settings.cloud.shown = 10_000_000;
-    stage.settings.cloud.budget_mib = 65_536;
+    let mut fixture = Fixture::new(cloud::Cloud);
+    fixture.settings.cloud.fade = 1e7;
+    fixture.settings.cloud.shown = 10_000_000;
+    fixture.settings.cloud.budget_mib = 65_536;
     let harness = Harness::builder().with_size(egui::vec2(800.0, 700.0)).build_ui_state(
-        |ui, (stage, widths): &mut (Stage, Vec<f32>)| {
-            let width = f32::from(stage.settings.layout.width(WindowSide::Left));
+        |ui, (fixture, widths): &mut (Fixture, Vec<f32>)| {
+            let width = f32::from(fixture.settings.layout.width(WindowSide::Left));
             let left = egui::Panel::left("left").default_size(width);
-            let shown = left.show(ui, |ui| stage.show(ui));
+            let shown = left.show(ui, |ui| fixture.show(ui));
             widths.push(shown.response.rect.width());
         },
-        (stage, Vec::new()),
+        (fixture, Vec::new()),
     );
     let mut harness = harness;
     harness.run_steps(5);
@@ -58,7 +58,7 @@ fn long_numbers_do_not_widen_their_panel() {
 
 #[test]
 fn the_scene_panel_speaks_in_commands() {
-    let mut harness = Stage::new(scene::Scene).harness();
+    let mut harness = Fixture::new(scene::Scene).harness();
     harness.run();
     for label in ["Grid", "Frame all", "Fly"] {
         harness.get_by_label(label).click();

@@ -5,7 +5,7 @@ use egui::accesskit::Role as WidgetRole;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use super::{Stage, diagnosed, shows};
+use super::{Fixture, diagnosed, shows};
 use crate::command::{Command, FilterCommand, ImageCommand};
 use crate::imaging::Reference;
 use crate::panel::hover::{self, Pointed};
@@ -28,9 +28,9 @@ impl Panel for Scrolled {
 
 #[test]
 fn who_scrolls_the_side_does_not_zoom_the_image_that_comes_by() {
-    let mut stage = Stage::new(Scrolled(image::ImagePanel::default()));
-    stage.film = image_stage(false).film;
-    let mut harness = stage.harness();
+    let mut fixture = Fixture::new(Scrolled(image::ImagePanel::default()));
+    fixture.film = image_stage(false).film;
+    let mut harness = fixture.harness();
     harness.run_steps(3);
     let turn = |points: f32| egui::Event::MouseWheel {
         unit: egui::MouseWheelUnit::Point,
@@ -61,42 +61,42 @@ fn who_scrolls_the_side_does_not_zoom_the_image_that_comes_by() {
 
 #[test]
 fn the_image_panel_shows_the_film() {
-    let mut stage = Stage::new(image::ImagePanel::default());
+    let mut fixture = Fixture::new(image::ImagePanel::default());
     let rgb = vec![0.5; 40 * 30 * 3];
     let tile = FilmTile { sequence: 1, width: 40, height: 30, first_row: 0, steps: 2400, rgb };
-    assert!(stage.film.accept(&tile), "a whole image");
-    let mut harness = stage.harness();
+    assert!(fixture.film.accept(&tile), "a whole image");
+    let mut harness = fixture.harness();
     harness.run();
-    assert!(shows(&harness, "40 × 30, 2 mutations a pixel"), "size and effort");
+    assert!(shows(&harness, "40 × 30, 2 mutations per pixel"), "size and effort");
     harness.get_by_label("2:1").click();
     harness.run();
     assert_eq!(harness.state().said, [Command::Image(ImageCommand::Zoom(2.0))], "zoom");
 }
 
 /// An image panel with a whole film, and perhaps a reference that is a tenth darker.
-pub(super) fn image_stage(compared: bool) -> Stage {
-    let mut stage = Stage::new(image::ImagePanel::default());
+pub(super) fn image_stage(compared: bool) -> Fixture {
+    let mut fixture = Fixture::new(image::ImagePanel::default());
     let rgb = vec![0.5; 40 * 30 * 3];
     let tile = FilmTile { sequence: 1, width: 40, height: 30, first_row: 0, steps: 2400, rgb };
-    assert!(stage.film.accept(&tile), "a whole image");
+    assert!(fixture.film.accept(&tile), "a whole image");
     let pixels = vec![common::Rgb::grey(0.4); 40 * 30];
     let reference = Reference { name: "right.exr".to_owned(), width: 40, height: 30, pixels };
-    stage.reference = compared.then_some(reference);
-    stage
+    fixture.reference = compared.then_some(reference);
+    fixture
 }
 
 #[test]
 fn a_pixel_or_a_rectangle_of_the_image_becomes_the_filter() {
-    let mut stage = image_stage(false);
+    let mut fixture = image_stage(false);
     let set = |text| FilterCommand::Set(FilterText::read(text));
-    stage.settings.filter.apply(&set("edges >= 3"));
-    let mut harness = stage.harness();
+    fixture.settings.filter.apply(&set("edges >= 3"));
+    let mut harness = fixture.harness();
     harness.run();
     let film = harness.get_by_role_and_label(WidgetRole::Image, "Film").rect();
     let pixel = film.height() / 30.0;
     let corner = egui::pos2(film.center().x - 20.0 * pixel, film.top());
     let at = |x: f32, y: f32| corner + pixel * egui::vec2(x, y);
-    let filter = |harness: &mut Harness<'_, Stage>| {
+    let filter = |harness: &mut Harness<'_, Fixture>| {
         let said = harness.state_mut().said.drain(..).collect::<Vec<_>>();
         match said.as_slice() {
             [Command::Filter(FilterCommand::Set(text))] => text.clone(),
@@ -165,10 +165,10 @@ fn the_image_is_compared_with_a_reference() {
 
 #[test]
 fn maps_wait_for_the_daemon() {
-    let mut stage = image_stage(false);
-    stage.settings.image.layer = crate::value::Layer::Dwell;
-    stage.status.statistics(diagnosed());
-    let mut harness = stage.harness();
+    let mut fixture = image_stage(false);
+    fixture.settings.image.layer = crate::value::Layer::Dwell;
+    fixture.status.statistics(diagnosed());
+    let mut harness = fixture.harness();
     harness.run();
     assert!(shows(&harness, "mean stay at a path"), "its colours are explained");
     let film = harness.get_by_role_and_label(WidgetRole::Image, "Film").rect();
@@ -184,9 +184,9 @@ fn maps_wait_for_the_daemon() {
 
 #[test]
 fn a_pixel_that_is_pointed_at_is_told_to_the_view() {
-    let mut stage = image_stage(false);
-    stage.selection = Some(super::paths::selected(crate::source::selection::Detail::Unasked));
-    let mut harness = stage.harness();
+    let mut fixture = image_stage(false);
+    fixture.selection = Some(super::paths::selected(crate::source::selection::Detail::Unasked));
+    let mut harness = fixture.harness();
     harness.run();
     let film = harness.get_by_role_and_label(WidgetRole::Image, "Film").rect();
     harness.hover_at(film.center());

@@ -27,8 +27,8 @@ use crate::source::selection::Selection;
 use crate::source::status::Status;
 use crate::source::store::Store;
 
-/// Everything a panel may read, and what it said.
-pub(super) struct Stage {
+/// Everything a panel may read, and the commands it returned.
+pub(super) struct Fixture {
     pub(super) settings: Settings,
     pub(super) camera: ViewCamera,
     pub(super) status: Status,
@@ -45,7 +45,7 @@ pub(super) struct Stage {
     pub(super) said: Vec<Command>,
 }
 
-impl Stage {
+impl Fixture {
     pub(super) fn new(panel: impl Panel + 'static) -> Self {
         Self {
             settings: Settings::default(),
@@ -68,7 +68,7 @@ impl Stage {
     pub(super) fn harness(self) -> Harness<'static, Self> {
         Harness::builder()
             .with_size(vec2(520.0, 700.0))
-            .build_ui_state(|ui, stage: &mut Self| stage.show(ui), self)
+            .build_ui_state(|ui, fixture: &mut Self| fixture.show(ui), self)
     }
 
     /// All that the panel may read.
@@ -157,19 +157,19 @@ fn diagnosed() -> Statistics {
 }
 
 /// True when some label contains `text`.
-pub(super) fn shows(harness: &Harness<'_, Stage>, text: &str) -> bool {
+pub(super) fn shows(harness: &Harness<'_, Fixture>, text: &str) -> bool {
     harness.query_all_by_label_contains(text).next().is_some()
 }
 
 #[test]
 fn empty_panels_say_what_will_come() {
-    let mut harness = Stage::new(statistics::StatisticsPanel).harness();
+    let mut harness = Fixture::new(statistics::StatisticsPanel).harness();
     harness.run();
     assert!(shows(&harness, "No statistics yet"), "no counts");
-    let mut harness = Stage::new(super::image::ImagePanel::default()).harness();
+    let mut harness = Fixture::new(super::image::ImagePanel::default()).harness();
     harness.run();
     assert!(shows(&harness, "No image yet"), "no image");
-    let mut harness = Stage::new(diagnostics::DiagnosticsPanel).harness();
+    let mut harness = Fixture::new(diagnostics::DiagnosticsPanel).harness();
     harness.run();
     assert!(shows(&harness, "No chains yet"), "no chains");
 }

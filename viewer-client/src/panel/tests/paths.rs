@@ -7,7 +7,7 @@ use common::{PathDetail, Rgb, VertexDetail};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
-use super::{Stage, shows};
+use super::{Fixture, shows};
 use crate::command::{Command, PathCommand};
 use crate::panel::hover::{self, Pointed};
 use crate::panel::{path, playback};
@@ -40,12 +40,12 @@ pub(super) fn numbers() -> PathDetail {
     }
 }
 
-fn path_panel(detail: Detail) -> Harness<'static, Stage> {
-    let mut stage = Stage::new(path::PathPanel::default());
-    stage.status.welcome(welcome());
-    stage.model = crate::source::model::Model::new(crate::synthetic::mesh());
-    stage.selection = Some(selected(detail));
-    stage.harness()
+fn path_panel(detail: Detail) -> Harness<'static, Fixture> {
+    let mut fixture = Fixture::new(path::PathPanel::default());
+    fixture.status.welcome(welcome());
+    fixture.model = crate::source::model::Model::new(crate::synthetic::mesh());
+    fixture.selection = Some(selected(detail));
+    fixture.harness()
 }
 
 #[test]
@@ -92,7 +92,7 @@ fn numbers_that_are_not_there_are_explained() {
     assert!(shows(&gone, "position"), "there is nothing else to show");
     let mut asked = path_panel(Detail::Asked(Instant::now()));
     asked.run_steps(3);
-    assert!(shows(&asked, "The daemon is asked"), "on their way");
+    assert!(shows(&asked, "Waiting for the daemon"), "on their way");
     let long_ago = Instant::now().checked_sub(Duration::from_mins(1)).expect("a minute ago");
     let mut silent = path_panel(Detail::Asked(long_ago));
     silent.run();
@@ -121,10 +121,10 @@ fn a_path_as_text_has_all_numbers() {
 
 #[test]
 fn the_path_panel_tells_all_of_a_path() {
-    let mut stage = Stage::new(path::PathPanel::default());
-    stage.status.welcome(welcome());
-    stage.selection = Some(Selection { vertex: Some(1), ..selected(Detail::Unasked) });
-    let mut harness = stage.harness();
+    let mut fixture = Fixture::new(path::PathPanel::default());
+    fixture.status.welcome(welcome());
+    fixture.selection = Some(Selection { vertex: Some(1), ..selected(Detail::Unasked) });
+    let mut harness = fixture.harness();
     harness.run();
     for text in ["D D D", "2 of 3 here", "bidirectional", "1.000", "4.000  6.000     3.000"] {
         assert!(shows(&harness, text), "`{text}` is missing");
@@ -139,14 +139,14 @@ fn the_path_panel_tells_all_of_a_path() {
 }
 
 /// The panel of the path that a file shows last.
-fn of_file(file: crate::source::dump::Stage) -> Harness<'static, Stage> {
-    let mut stage = Stage::new(path::PathPanel::default());
-    let act = file.acts.last().expect("a path");
-    let detail = Detail::Missing("A file of paths does not tell them.".to_owned());
-    let selection = Selection::new(act.header, act.vertices.clone());
-    stage.selection = Some(Selection { detail, ..selection });
-    stage.playback = Some(crate::source::playback::Playback::new(file));
-    stage.harness()
+fn of_file(file: crate::source::dump::PlayableDump) -> Harness<'static, Fixture> {
+    let mut fixture = Fixture::new(path::PathPanel::default());
+    let path = file.paths.last().expect("a path");
+    let detail = Detail::Missing("A file of paths does not give them.".to_owned());
+    let selection = Selection::new(path.header, path.vertices.clone());
+    fixture.selection = Some(Selection { detail, ..selection });
+    fixture.playback = Some(crate::source::playback::Playback::new(file));
+    fixture.harness()
 }
 
 #[test]
@@ -165,7 +165,7 @@ fn a_path_of_a_file_claims_what_the_file_tells() {
     for text in ["f/p light", "0.0100", "0.2200", "Throughputs, geometry terms"] {
         assert!(shows(&silent, text), "`{text}` is missing");
     }
-    let mut annotated = of_file(crate::source::dump::tests::stage());
+    let mut annotated = of_file(crate::source::dump::tests::playable());
     annotated.run();
     for text in ["chain 4, step 3", "a = 0.5000", "0 steps", "Densities, throughputs"] {
         assert!(shows(&annotated, text), "`{text}` is missing");
@@ -174,11 +174,11 @@ fn a_path_of_a_file_claims_what_the_file_tells() {
 
 #[test]
 fn a_file_of_paths_is_stepped_and_told() {
-    let mut stage = Stage::new(playback::PlaybackPanel);
-    let mut file = crate::source::playback::Playback::new(crate::source::dump::tests::stage());
+    let mut fixture = Fixture::new(playback::PlaybackPanel);
+    let mut file = crate::source::playback::Playback::new(crate::source::dump::tests::playable());
     file.apply(crate::command::PlayCommand::To(2));
-    stage.playback = Some(file);
-    let mut harness = stage.harness();
+    fixture.playback = Some(file);
+    let mut harness = fixture.harness();
     harness.run();
     for text in [
         "Paused, step 3 of 4",

@@ -24,7 +24,7 @@ impl Panel for Heading {
 
 #[test]
 fn a_section_is_folded_moved_explained_copied_and_closed_at_its_heading() {
-    let mut harness = Stage::new(Heading).harness();
+    let mut harness = Fixture::new(Heading).harness();
     harness.run_steps(2);
     let mut click = |labels: &[&str]| {
         for label in labels {
@@ -43,22 +43,22 @@ fn a_section_is_folded_moved_explained_copied_and_closed_at_its_heading() {
     let left = layout(LayoutCommand::Arrange(name, Move::Left));
     assert_eq!(click(&["…", "Move to the left side"]), left, "move");
     assert_eq!(click(&["?"]), [], "a sheet");
-    assert!(shows(&harness, "Counts of all chains since the epoch began"), "what it is for");
+    assert!(shows(&harness, "Counts over all chains since the epoch began"), "what it is for");
 }
 
 #[test]
 fn the_bar_at_the_foot_tells_who_drives_what() {
-    let mut stage = Stage::new(status::StatusBar);
-    stage.status.welcome(welcome());
-    stage.status.link = LinkState::Connected;
-    stage.status.statistics(statistics());
-    stage.status.latency = Some(std::time::Duration::from_micros(2500));
+    let mut fixture = Fixture::new(status::StatusBar);
+    fixture.status.welcome(welcome());
+    fixture.status.link = LinkState::Connected;
+    fixture.status.statistics(statistics());
+    fixture.status.latency = Some(std::time::Duration::from_micros(2500));
     let chains = ChainState { running: false, ..ChainState::default() };
-    stage.status.steering.accept(Notice::Chains(chains));
+    fixture.status.steering.accept(Notice::Chains(chains));
     let author = Author { session: 9, name: "Ada".to_owned() };
     let driver = Attendee { author, role: Role::Driver, ..Attendee::default() };
-    stage.status.steering.accept(Notice::Presence(Presence { viewers: vec![driver] }));
-    let mut harness = stage.harness();
+    fixture.status.steering.accept(Notice::Presence(Presence { viewers: vec![driver] }));
+    let mut harness = fixture.harness();
     harness.set_size(vec2(1280.0, 40.0));
     harness.run_steps(3);
     for text in ["Connected to", "Chains paused", "Ada drives", "2.5", "dropped", "mutations/s"] {
@@ -68,16 +68,16 @@ fn the_bar_at_the_foot_tells_who_drives_what() {
 
 #[test]
 fn every_part_has_a_text_for_the_clipboard() {
-    let mut stage = Stage::new(status::StatusBar);
-    stage.status.welcome(welcome());
-    stage.status.link = LinkState::Connected;
-    stage.status.statistics(diagnosed());
-    stage.settings.filter.apply(&FilterCommand::Set(FilterText::read("edges >= 3")));
+    let mut fixture = Fixture::new(status::StatusBar);
+    fixture.status.welcome(welcome());
+    fixture.status.link = LinkState::Connected;
+    fixture.status.statistics(diagnosed());
+    fixture.settings.filter.apply(&FilterCommand::Set(FilterText::read("edges >= 3")));
     let paths = batch(&[&[[1.0, 2.0, 3.0], [4.0, 6.0, 3.0]]]);
     let mut reader = paths.reader();
     let path = reader.next().expect("a path");
-    stage.selection = Some(Selection::new(path.header, path.vertices.to_vec()));
-    let text = |source| text_of(&stage.world(), source);
+    fixture.selection = Some(Selection::new(path.header, path.vertices.to_vec()));
+    let text = |source| text_of(&fixture.world(), source);
     for (source, expected) in [
         (Part::Status, "daemon\t127.0.0.1:50061"),
         (Part::Panel(PanelName::Statistics), "bidirectional\t2000\t1500\t250\t0.45"),
@@ -101,12 +101,12 @@ fn every_part_has_a_text_for_the_clipboard() {
 
 #[test]
 fn the_raw_values_of_a_pixel_are_copied() {
-    let mut stage = Stage::new(image::ImagePanel::default());
+    let mut fixture = Fixture::new(image::ImagePanel::default());
     let rgb = [0.125, 0.25, 0.5].repeat(40 * 30);
     let tile =
         common::FilmTile { sequence: 1, width: 40, height: 30, first_row: 0, steps: 99, rgb };
-    assert!(stage.film.accept(&tile), "a whole image");
-    let mut harness = stage.harness();
+    assert!(fixture.film.accept(&tile), "a whole image");
+    let mut harness = fixture.harness();
     harness.run_steps(3);
     let film = harness.get_by_role(WidgetRole::Image).rect();
     harness.hover_at(film.center());
@@ -125,7 +125,7 @@ fn the_raw_values_of_a_pixel_are_copied() {
 fn channels_and_visible_differences_are_asked_for() {
     use crate::command::ImageCommand;
     use crate::value::{Channel, Layer};
-    let mut stage = Stage::new(image::ImagePanel::default());
+    let mut fixture = Fixture::new(image::ImagePanel::default());
     let tile = common::FilmTile {
         sequence: 1,
         width: 40,
@@ -134,10 +134,10 @@ fn channels_and_visible_differences_are_asked_for() {
         steps: 99,
         rgb: vec![0.5; 3600],
     };
-    assert!(stage.film.accept(&tile), "a whole image");
+    assert!(fixture.film.accept(&tile), "a whole image");
     let pixels = vec![common::Rgb::grey(0.25); 1200];
-    stage.reference = Some(Reference { name: "r.exr".to_owned(), width: 40, height: 30, pixels });
-    let mut harness = stage.harness();
+    fixture.reference = Some(Reference { name: "r.exr".to_owned(), width: 40, height: 30, pixels });
+    let mut harness = fixture.harness();
     harness.run_steps(3);
     for label in ["Y", "Measure"] {
         harness.get_by_label(label).click();
@@ -151,14 +151,14 @@ fn channels_and_visible_differences_are_asked_for() {
     state.settings.image.layer = Layer::Flip;
     harness.run_steps(3);
     assert!(shows(&harness, "0.2500"), "the mean");
-    assert!(shows(&harness, "FLIP: the difference that a person sees"), "a legend");
+    assert!(shows(&harness, "FLIP: the difference that a person perceives"), "a legend");
 }
 
 /// What a drag with a button and modifiers does to the camera.
 fn dragged(mouse: MousePreset, button: PointerButton, modifiers: Modifiers) -> Vec<String> {
-    let mut stage = Stage::new(viewport::Viewport::default());
-    stage.settings.window.mouse = mouse;
-    let mut harness = stage.harness();
+    let mut fixture = Fixture::new(viewport::Viewport::default());
+    fixture.settings.window.mouse = mouse;
+    let mut harness = fixture.harness();
     harness.run_steps(2);
     let view = harness.get_by_role_and_label(WidgetRole::Canvas, "Viewport").rect();
     let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers };

@@ -9,7 +9,7 @@ use crate::panel::{cloud, scene, widgets};
 use crate::value::{Choice as _, ClipSide, ColorMode, Range, Switch};
 
 /// The least and the largest number of the slider with this label, if it is shown.
-fn slider(harness: &Harness<'_, Stage>, label: &str) -> Option<[Option<f64>; 2]> {
+fn slider(harness: &Harness<'_, Fixture>, label: &str) -> Option<[Option<f64>; 2]> {
     let named = harness.query_all_by_label(label);
     let mut sliders = named.filter(|node| node.accesskit_node().role() == WidgetRole::Slider);
     let node = sliders.next()?;
@@ -27,12 +27,12 @@ fn numbers(group: &'static str) -> impl Iterator<Item = (&'static Form, Range<f6
 #[test]
 fn a_slider_ends_where_the_parser_does() {
     let mut count = 0;
-    for (group, mut stage) in
-        [("cloud", Stage::new(cloud::Cloud)), ("scene", Stage::new(scene::Scene))]
+    for (group, mut fixture) in
+        [("cloud", Fixture::new(cloud::Cloud)), ("scene", Fixture::new(scene::Scene))]
     {
-        stage.settings.cloud.color = ColorMode::Length;
-        stage.settings.scene.clip = ClipSide::X;
-        let mut harness = stage.harness();
+        fixture.settings.cloud.color = ColorMode::Length;
+        fixture.settings.scene.clip = ClipSide::X;
+        let mut harness = fixture.harness();
         harness.run();
         for (form, range) in numbers(group) {
             let Some(limits) = slider(&harness, form.label) else { continue };
@@ -55,14 +55,24 @@ impl Panel for Rows {
     }
 }
 
+/// A script may set more digits than a slider shows; looking at them changes nothing.
+#[test]
+fn a_slider_leaves_a_value_that_it_rounds_alone() {
+    let mut fixture = Fixture::new(Rows);
+    fixture.settings.cloud.width = 1.2345;
+    let mut harness = fixture.harness();
+    harness.run();
+    assert_eq!(harness.state().said, [], "nobody touched it");
+}
+
 #[test]
 fn a_row_explains_itself_with_its_keys() {
-    let mut harness = Stage::new(Rows).harness();
+    let mut harness = Fixture::new(Rows).harness();
     harness.run();
     harness.get_by_role_and_label(WidgetRole::Slider, "Width").hover();
     harness.run_steps(30);
     assert!(
-        shows(&harness, "whatever their distance (0.25 to 20 px)"),
+        shows(&harness, "independent of their distance (0.25 to 20 px)"),
         "what it is, and its range"
     );
     assert!(shows(&harness, "[  ]"), "its keys");
@@ -70,7 +80,7 @@ fn a_row_explains_itself_with_its_keys() {
 
 #[test]
 fn a_row_gives_the_command_of_its_setting() {
-    let mut harness = Stage::new(Rows).harness();
+    let mut harness = Fixture::new(Rows).harness();
     harness.run();
     harness.get_by_label("Tint start and end").click();
     harness.run();

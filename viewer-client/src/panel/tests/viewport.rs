@@ -9,7 +9,7 @@ use egui_kittest::kittest::Queryable as _;
 use glam::Vec3;
 
 use super::paths::{numbers, selected};
-use super::{Stage, shows};
+use super::{Fixture, shows};
 use crate::command::{CameraCommand, Command, PathCommand};
 use crate::panel::hover::{self, Pointed};
 use crate::panel::viewport;
@@ -18,19 +18,19 @@ use crate::source::selection::{Detail, Selection};
 use crate::synthetic::{batch, camera, mesh, welcome};
 
 /// A view of the made-up scene with one path through its middle.
-fn view() -> Stage {
-    let mut stage = Stage::new(viewport::Viewport::default());
-    stage.status.welcome(welcome());
-    stage.model = Model::new(mesh());
-    let bounds = stage.model.as_ref().expect("a model").bounds;
-    stage.camera.set_scene(bounds, Some(camera()));
-    stage.store.append(&batch(&[&[[-400.0, 0.0, 0.0], [400.0, 0.0, 0.0]]]));
-    stage
+fn view() -> Fixture {
+    let mut fixture = Fixture::new(viewport::Viewport::default());
+    fixture.status.welcome(welcome());
+    fixture.model = Model::new(mesh());
+    let bounds = fixture.model.as_ref().expect("a model").bounds;
+    fixture.camera.set_scene(bounds, Some(camera()));
+    fixture.store.append(&batch(&[&[[-400.0, 0.0, 0.0], [400.0, 0.0, 0.0]]]));
+    fixture
 }
 
 #[test]
 fn a_click_in_the_viewport_picks() {
-    let mut harness = Stage::new(viewport::Viewport::default()).harness();
+    let mut harness = Fixture::new(viewport::Viewport::default()).harness();
     harness.run_steps(2);
     harness.get_by_role_and_label(WidgetRole::Canvas, "Viewport").click();
     harness.run_steps(2);
@@ -41,7 +41,7 @@ fn a_click_in_the_viewport_picks() {
 
 #[test]
 fn dragging_in_the_viewport_turns_the_camera() {
-    let mut harness = Stage::new(viewport::Viewport::default()).harness();
+    let mut harness = Fixture::new(viewport::Viewport::default()).harness();
     harness.run_steps(2);
     let view = harness.get_by_role_and_label(WidgetRole::Canvas, "Viewport").rect();
     harness.drag_at(view.center());
@@ -66,7 +66,7 @@ fn dragging_in_the_viewport_turns_the_camera() {
 }
 
 /// Where a point of the scene is seen.
-fn seen(harness: &Harness<'_, Stage>, point: Vec3) -> Pos2 {
+fn seen(harness: &Harness<'_, Fixture>, point: Vec3) -> Pos2 {
     let rect = harness.get_by_role_and_label(WidgetRole::Canvas, "Viewport").rect();
     let lens = harness.state().camera.lens(rect.aspect_ratio());
     let d = point - lens.eye;
@@ -98,12 +98,12 @@ fn a_path_under_the_resting_cursor_is_told_of() {
 
 #[test]
 fn parts_of_the_selected_path_are_told_of_and_marked_in_the_list() {
-    let mut stage = view();
+    let mut fixture = view();
     let mut path = selected(Detail::Known(Arc::new(numbers())));
     path.vertices[0].position = [0.0, 0.0, 0.0];
     path.vertices[1].position = [400.0, 0.0, 0.0];
-    stage.selection = Some(Selection { vertex: None, ..path });
-    let mut harness = stage.harness();
+    fixture.selection = Some(Selection { vertex: None, ..path });
+    let mut harness = fixture.harness();
     harness.run_steps(2);
     let middle = seen(&harness, Vec3::ZERO);
     harness.hover_at(middle);

@@ -120,7 +120,7 @@ fn key(painter: &Painter, rect: Rect, moment: &Moment, dark: bool) {
     let area = Rect::from_min_size(pos2(left, rect.top() + MARGIN + 27.0), size);
     veil(painter, area, ink);
     let mut place = area.min + vec2(4.0, 0.5 * KEY_ENTRY.y);
-    let made = if moment.step.is_complete() { "proposed" } else { "came to" };
+    let made = if moment.step.is_complete() { "proposed" } else { "got this far" };
     for (name, color, width, dashed) in [
         ("kept", theme::EXPLORED, KEPT, false),
         ("deleted", theme::DELETED, KEPT, true),

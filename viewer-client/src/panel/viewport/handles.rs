@@ -156,16 +156,16 @@ mod tests {
 
     use super::*;
     use crate::command::{Command, FilterCommand, SceneCommand};
-    use crate::panel::tests::Stage;
+    use crate::panel::tests::Fixture;
     use crate::panel::viewport::Viewport;
     use crate::value::Bounds;
     use crate::value::{Light, Sphere};
 
     /// What is said when the x axis of a ball of this radius in the middle is pulled outwards.
-    fn pull(mut stage: Stage, radius: f32) -> Vec<Command> {
+    fn pull(mut fixture: Fixture, radius: f32) -> Vec<Command> {
         let bounds = Bounds { min: Vec3::splat(-100.0), max: Vec3::splat(100.0) };
-        stage.camera.set_scene(bounds, None);
-        let mut harness = stage.harness();
+        fixture.camera.set_scene(bounds, None);
+        let mut harness = fixture.harness();
         harness.run_steps(2);
         let view = harness.get_by_role_and_label(WidgetRole::Canvas, "Viewport").rect();
         let lens = harness.state().camera.lens(view.aspect_ratio());
@@ -184,11 +184,11 @@ mod tests {
     #[test]
     fn an_axis_moves_a_selector_or_scales_it() {
         for handles in Handles::ALL {
-            let mut stage = Stage::new(Viewport::default());
+            let mut fixture = Fixture::new(Viewport::default());
             let sphere = Sphere { kind: SelectorKind::Any, place: [0.0, 0.0, 0.0, 30.0] };
-            stage.settings.filter.apply(&FilterCommand::Add(sphere));
-            stage.settings.scene.handles = handles;
-            let said = pull(stage, 30.0);
+            fixture.settings.filter.apply(&FilterCommand::Add(sphere));
+            fixture.settings.scene.handles = handles;
+            let said = pull(fixture, 30.0);
             let places: Vec<_> = said
                 .iter()
                 .map(|command| match command {
@@ -211,10 +211,10 @@ mod tests {
 
     #[test]
     fn an_axis_moves_the_light() {
-        let mut stage = Stage::new(Viewport::default());
-        stage.settings.scene.light = Light::At([0.0; 3]);
+        let mut fixture = Fixture::new(Viewport::default());
+        fixture.settings.scene.light = Light::At([0.0; 3]);
         // The light's handles are as long as a twentieth of the scene.
-        let said = pull(stage, 0.05 * Vec3::splat(100.0).length());
+        let said = pull(fixture, 0.05 * Vec3::splat(100.0).length());
         let to_the_right = |c: &Command| matches!(c, Command::Scene(SceneCommand::Light(Light::At([x, ..]))) if *x > 1.0);
         assert!(said.iter().any(to_the_right), "{said:?}");
     }

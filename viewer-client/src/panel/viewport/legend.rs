@@ -42,7 +42,7 @@ pub(super) fn paint(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color
             }
         }
         ColorMode::Length => {
-            column.ramp(&format!("edges ({scale})"), "1", "10 and more", &ramp);
+            column.ramp(&format!("edges ({scale})"), "1", "10 or more", &ramp);
         }
         ColorMode::Luminance => {
             let light = world.names().frame.map_or(1.0, |frame| frame.light) as f32;
@@ -55,19 +55,22 @@ pub(super) fn paint(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color
             column.ramp(&title, &lowest, &format!("{:.1e}", light * high.exp2()), &ramp);
         }
         ColorMode::Throughput => {
-            let lowest = if scale == ColorScale::Log { "0.001 and less" } else { "0" };
+            let lowest = if scale == ColorScale::Log { "0.001 or less" } else { "0" };
             column.ramp(&format!("throughput to the lens ({scale})"), lowest, "1", &ramp);
         }
-        ColorMode::Dwell => column.ramp("steps stayed (log)", "1", "16 and more", &ramp),
+        ColorMode::Dwell => column.ramp("steps stayed (log)", "1", "16 or more", &ramp),
         ColorMode::Acceptance => column.ramp("acceptance", "0", "1", &ramp),
         ColorMode::Age => {
             let oldest =
-                format!("{} paths ago and more", format::count(3.0 * f64::from(cloud.fade)));
+                format!("{} or more paths ago", format::count(3.0 * f64::from(cloud.fade)));
             column.ramp("age", &oldest, "now", &ramp);
         }
         ColorMode::Kind => kinds(&mut column),
         ColorMode::Chain => {
-            column.entry(&format!("each {CHAIN_COLORS}th chain alike"), theme::strategy_color(0));
+            column.entry(
+                &format!("every {CHAIN_COLORS}th chain looks the same"),
+                theme::strategy_color(0),
+            );
         }
         ColorMode::Class => {
             let names = world.store.classes().names();

@@ -67,20 +67,21 @@ fn nothing_yet(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
     let status = world.status;
     let (title, lines) = match &status.link {
         LinkState::Idle => {
-            let remedy = "The menu Connection leads to a daemon.".to_owned();
-            ("Nothing to look at".to_owned(), vec![remedy])
+            let remedy = "Use the Connection menu to connect to a daemon.".to_owned();
+            ("Nothing is open".to_owned(), vec![remedy])
         }
-        LinkState::Connecting => {
-            (format!("Connecting to {} …", status.address), vec!["One moment.".to_owned()])
-        }
+        LinkState::Connecting => (
+            format!("Connecting to {} …", status.address),
+            vec!["This may take a moment.".to_owned()],
+        ),
         LinkState::Connected => {
-            ("Connected".to_owned(), vec!["The scene is on its way.".to_owned()])
+            ("Connected".to_owned(), vec!["Receiving the scene ...".to_owned()])
         }
         LinkState::Disconnected { reason, retry_at } => {
             let seconds = retry_at.saturating_duration_since(world.now).as_secs_f32().ceil();
             let lines = vec![
                 format::sentence(reason),
-                format!("Retrying in {seconds:.0} s; R connects now."),
+                format!("Retrying in {seconds:.0} s; press R to connect now."),
             ];
             ("No connection".to_owned(), lines)
         }
@@ -96,8 +97,8 @@ fn nothing_found(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32)
     if is_filtered && world.store.matched() == 0 && counts.matched == 0 && counts.seen > 0 {
         let seen = format::count(counts.seen as f64);
         let lines = vec![
-            format!("None of {seen} so far. The section Filter tells what came nearest,"),
-            "and offers what to do; Ctrl+Z takes the last change back.".to_owned(),
+            format!("None of {seen} so far. The Filter panel shows the nearest path"),
+            "and what to do about it; Ctrl+Z undoes the last change.".to_owned(),
         ];
         tell(painter, rect, ink, "No path matches the filter", lines);
     }
@@ -107,15 +108,16 @@ fn nothing_found(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32)
 fn tell(painter: &Painter, rect: Rect, ink: Color32, title: &str, lines: Vec<String>) {
     let faint = ink.gamma_multiply(0.7);
     let width = (rect.width() - 2.0 * MARGIN).max(0.0);
-    let wrapped = |line| {
-        let mut job = LayoutJob::simple(line, FontId::proportional(14.0), faint, width);
+    let wrapped = |line, size, color| {
+        let mut job = LayoutJob::simple(line, FontId::proportional(size), color, width);
         job.halign = Align::Center;
         painter.layout_job(job)
     };
-    let lines: Vec<_> = lines.into_iter().map(wrapped).collect();
+    let title = wrapped(title.to_owned(), 22.0, ink);
+    let lines: Vec<_> = lines.into_iter().map(|line| wrapped(line, 14.0, faint)).collect();
     let height: f32 = lines.iter().map(|line| line.size().y + GAP).sum();
     let mut place = rect.center() - vec2(0.0, 0.5 * height);
-    painter.text(place, Align2::CENTER_BOTTOM, title, FontId::proportional(22.0), ink);
+    painter.galley(place - vec2(0.0, title.size().y), title, ink);
     place.y += 2.0 * GAP;
     for line in lines {
         let below = line.size().y + GAP;
@@ -168,7 +170,7 @@ fn captions(painter: &Painter, rect: Rect, world: &World<'_>, ink: Color32) {
     text(painter, corner, Align2::RIGHT_TOP, &paths, ink);
     if world.settings.cloud.frozen {
         let place = corner + vec2(0.0, 24.0);
-        text(painter, place, Align2::RIGHT_TOP, "Frozen; Space goes on", theme::BUSY);
+        text(painter, place, Align2::RIGHT_TOP, "Frozen; press Space to resume", theme::BUSY);
     } else if !world.status.is_connected() {
         let place = corner + vec2(0.0, 24.0);
         text(painter, place, Align2::RIGHT_TOP, "Not connected", theme::BAD);
@@ -181,4 +183,26 @@ fn text(painter: &Painter, place: Pos2, anchor: Align2, text: &str, color: Color
     let rect = anchor.anchor_size(place, galley.size());
     veil(painter, rect, color);
     painter.galley(rect.min, galley, color);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_told_in_a_narrow_view_is_not_cut_off() {
+        let view = Rect::from_min_size(pos2(40.0, 30.0), vec2(220.0, 400.0));
+        let title = "Connecting to a-machine-with-a-long-name.far-away.example:50061 …";
+        let reason = "the daemon at a-machine-with-a-long-name.far-away.example:50061 encrypts: \
+                      give the fingerprint that it told when it started (--fingerprint)";
+        let mut output = egui::Context::default().run_ui(egui::RawInput::default(), |ui| {
+            let painter = ui.painter().with_clip_rect(view);
+            tell(&painter, view, Color32::WHITE, title, vec![reason.to_owned()]);
+        });
+        // Nothing is drawn.
+        output.textures_delta.clear();
+        let written = output.shapes.iter().map(|clipped| clipped.shape.visual_bounding_rect());
+        let written = written.reduce(Rect::union).expect("something is told");
+        assert!(view.contains_rect(written), "{written:?} lies in {view:?}");
+    }
 }

@@ -11,7 +11,7 @@ pub enum SessionError {
     #[error("`{0}` is not an address; write HOST:PORT, such as 127.0.0.1:50061")]
     BadAddress(String),
     /// The certificate is not the right one, or there is no TLS.
-    #[error("no trusted connection to {address}: {reason}")]
+    #[error("cannot make a trusted connection to {address}: {reason}")]
     Untrusted {
         /// HOST:PORT.
         address: String,
@@ -20,8 +20,8 @@ pub enum SessionError {
     },
     /// A token must not be seen by others.
     #[error(
-        "{0} is another machine, and the token would travel unencrypted: trust the daemon's \
-         certificate with --fingerprint or --ca-cert"
+        "{0} is another machine, and the token would be sent unencrypted: trust the daemon's \
+        certificate with --fingerprint or --ca-cert"
     )]
     ExposedToken(String),
     /// The greeting broke off; what is there tells why.
@@ -37,7 +37,7 @@ pub enum SessionError {
     #[error("the connection was lost")]
     Lost,
     /// A message that makes no sense.
-    #[error("the daemon sent something unreadable: {0}")]
+    #[error("the daemon sent an unreadable message: {0}")]
     Unreadable(#[from] WireError),
 }
 
@@ -50,8 +50,8 @@ impl From<Status> for SessionError {
     }
 }
 
-/// Why there was no greeting.
-pub(super) enum Broken {
+/// Why the handshake failed.
+pub(super) enum HandshakeError {
     /// It is known already.
     Told(SessionError),
     /// The connection did not come about, or was broken off.

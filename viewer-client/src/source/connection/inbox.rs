@@ -77,7 +77,7 @@ impl Arrival {
         }
     }
 
-    /// What the explorer did, if this tells of it.
+    /// What the explorer did, if this reports it.
     fn focus(&self) -> Option<&TracerEvent> {
         match self {
             Self::Said(event) => match event {
@@ -95,7 +95,7 @@ impl Arrival {
 #[derive(Debug, Default)]
 struct Waiting {
     arrivals: VecDeque<Arrival>,
-    /// Bytes of what is told of the explorer, about.
+    /// Approximate size of the explorer's messages, in bytes.
     focus_bytes: usize,
     paths: Backlog,
     /// Paths have come since somebody looked last.
@@ -294,7 +294,7 @@ mod tests {
         FilmTile { sequence: 0, width, height: 64, first_row, steps: 0, rgb }
     }
 
-    /// What is told of losses.
+    /// What is reported about losses.
     fn gap(arrivals: &VecDeque<Arrival>) -> Option<Gap> {
         arrivals.iter().find_map(|arrival| match arrival {
             Arrival::Said(TracerEvent::Gap(gap)) => Some(*gap),

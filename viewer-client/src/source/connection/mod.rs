@@ -37,16 +37,16 @@ const OUTBOX: usize = 64;
 /// The daemon is asked this often how long it takes to answer.
 const QUESTION: Duration = Duration::from_secs(2);
 
-/// How soon news wants to be seen.
+/// How soon something must be shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Haste {
+pub enum Urgency {
     /// Somebody waits for it.
     Now,
     /// More of what comes all the time: paths, the image, counts.
     Whenever,
 }
 
-impl Haste {
+impl Urgency {
     fn of(event: &TracerEvent) -> Self {
         match event {
             TracerEvent::Paths(_)
@@ -59,7 +59,7 @@ impl Haste {
 }
 
 /// Called, from the connection's thread, whenever something has come.
-pub type Waker = Box<dyn Fn(Haste) + Send + Sync>;
+pub type Waker = Box<dyn Fn(Urgency) + Send + Sync>;
 
 /// A connection that mends itself. Dropping it says goodbye and waits for its thread.
 pub struct Link {
@@ -254,7 +254,7 @@ impl Connection {
                 Some(event) = self.orders.recv() => {
                     self.remember(&event);
                     if !session.say(event) {
-                        tracing::warn!("the daemon does not listen; something was not said");
+                        tracing::warn!("the daemon is not accepting messages; one was not sent");
                     }
                 }
                 event = session.next() => match event {
@@ -266,7 +266,7 @@ impl Connection {
                             fetching.spawn(fetch);
                             self.set_state(LinkState::Connected);
                         }
-                        let haste = Haste::of(&event);
+                        let haste = Urgency::of(&event);
                         if self.inbox.put(event) {
                             (self.waker)(haste);
                         }
@@ -281,11 +281,11 @@ impl Connection {
         let Some(scene) = scene else { return };
         self.held_hash.clone_from(&scene.hash);
         self.inbox.push(Arrival::Scene(Box::new(scene)));
-        (self.waker)(Haste::Now);
+        (self.waker)(Urgency::Now);
     }
 
     fn set_state(&self, state: LinkState) {
         self.inbox.push(Arrival::Link(state));
-        (self.waker)(Haste::Now);
+        (self.waker)(Urgency::Now);
     }
 }

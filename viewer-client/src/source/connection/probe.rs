@@ -38,8 +38,8 @@ pub(super) enum Found {
     Closed,
 }
 
-/// Looks what is at `address`, HOST:PORT.
-pub(super) async fn look(address: &str) -> Found {
+/// Finds out what is at `address`, HOST:PORT.
+pub(super) async fn identify(address: &str) -> Found {
     let mut stream = match timeout(CONNECTING, TcpStream::connect(address)).await {
         Ok(Ok(stream)) => stream,
         Ok(Err(error)) if error.kind() == ErrorKind::ConnectionRefused => return Found::Nobody,
@@ -118,11 +118,11 @@ mod tests {
             (peer(b"SSH-2.0-OpenSSH_9.6\r\n", b""), "is an SSH server"),
             (peer(b"", b"HTTP/1.1 400 Bad Request\r\n\r\n"), "is a web server"),
             (peer(b"", b"<!DOCTYPE HTML>\n"), "is a web server"),
-            (peer(b"", alert), "encrypts: give the fingerprint"),
+            (peer(b"", alert), "uses encryption: give the fingerprint"),
             (peer(b"220 mail ESMTP\r\n", b""), "is something else"),
-            (peer(b"", b""), "hangs up at once"),
+            (peer(b"", b""), "closes the connection at once"),
             (gone, "nobody listens at 127.0.0.1:"),
-            ("no-such-host.invalid:50061".to_owned(), "no way to no-such-host.invalid:50061"),
+            ("no-such-host.invalid:50061".to_owned(), "cannot reach no-such-host.invalid:50061"),
         ] {
             let complaint = complaint(address).await;
             assert!(complaint.contains(words), "{words}: {complaint}");

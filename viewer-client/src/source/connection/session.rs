@@ -14,7 +14,7 @@ use tonic::service::interceptor::InterceptedService;
 use tonic::transport::{Channel, Endpoint};
 use tonic::{Code, Streaming};
 
-use super::error::{Broken, SessionError};
+use super::error::{HandshakeError, SessionError};
 use super::peer::{Bearer, Peer, Trust};
 use super::probe::{self, Found};
 use super::tls;
@@ -23,7 +23,7 @@ use super::tls;
 const WINDOW_BYTES: u32 = 4 << 20;
 /// A daemon that takes longer to answer is not there.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(5);
-/// A daemon greets whoever says hello within moments.
+/// A daemon answers a hello within moments.
 const GREETING_TIMEOUT: Duration = Duration::from_secs(10);
 /// A silent daemon is asked this often whether it lives.
 const PING_INTERVAL: Duration = Duration::from_secs(10);
@@ -78,13 +78,13 @@ impl Session {
         let greeted = tokio::time::timeout(GREETING_TIMEOUT, Self::greet(peer, greeting));
         match greeted.await {
             Ok(Ok(session)) => Ok(session),
-            Ok(Err(Broken::Told(error))) => Err(error),
-            Ok(Err(Broken::Off)) | Err(_) => Err(explain(peer, None).await),
-            Ok(Err(Broken::Untrusted(reason))) => Err(explain(peer, Some(reason)).await),
+            Ok(Err(HandshakeError::Told(error))) => Err(error),
+            Ok(Err(HandshakeError::Off)) | Err(_) => Err(explain(peer, None).await),
+            Ok(Err(HandshakeError::Untrusted(reason))) => Err(explain(peer, Some(reason)).await),
         }
     }
 
-    async fn greet(peer: &Peer, greeting: Greeting) -> Result<Self, Broken> {
+    async fn greet(peer: &Peer, greeting: Greeting) -> Result<Self, HandshakeError> {
         let tune = |endpoint: Endpoint| {
             endpoint
                 .connect_timeout(CONNECT_TIMEOUT)
@@ -113,12 +113,14 @@ impl Session {
         let answer = client.watch(ReceiverStream::new(outbox)).await;
         let incoming = answer.map_err(|status| match status.code() {
             // What a peer that speaks TLS, or anything but gRPC, makes of a greeting.
-            Code::Internal | Code::Unavailable | Code::Cancelled | Code::Unknown => Broken::Off,
-            Code::Unimplemented => Broken::Told(SessionError::Unreachable(format!(
-                "what answers at {} is no Lvis daemon; look at its address and port again",
+            Code::Internal | Code::Unavailable | Code::Cancelled | Code::Unknown => {
+                HandshakeError::Off
+            }
+            Code::Unimplemented => HandshakeError::Told(SessionError::Unreachable(format!(
+                "the server at {} is not a Lvis daemon; check the address and port",
                 peer.address
             ))),
-            _ => Broken::Told(SessionError::from(status)),
+            _ => HandshakeError::Told(SessionError::from(status)),
         })?;
         let incoming = incoming.into_inner();
         Ok(Self { client, incoming, outgoing })
@@ -162,43 +164,46 @@ impl Session {
 async fn explain(peer: &Peer, reason: Option<String>) -> SessionError {
     let address = peer.address.clone();
     let wants_encryption = peer.trust != Trust::Plain;
-    let text = match (probe::look(&address).await, reason) {
+    let text = match (probe::identify(&address).await, reason) {
         (Found::Encrypted, Some(reason)) => {
             return SessionError::Untrusted { address, reason };
         }
         (Found::NoWay(error), _) => {
-            format!("there is no way to {address}: {error}; look at the name, and at the network")
+            format!("cannot reach {address}: {error}; check the name and the network")
         }
         (Found::Nobody, _) => format!(
             "nobody listens at {address}: start a daemon with `tracer-server serve --listen \
-             {address}`, or look at the port that it told"
+             {address}`, or check the port that it printed"
         ),
         (Found::Silence, _) => {
-            format!("nothing answers at {address}: is the machine on, and does a firewall let it?")
+            format!(
+                "nothing answers at {address}: is the machine running, and is a firewall in \
+                the way?"
+            )
         }
         (Found::Plain, _) if wants_encryption => format!(
-            "the daemon at {address} does not encrypt: connect without --fingerprint and --ca-cert, \
-             or have it started with --tls-self-signed"
+            "the daemon at {address} does not use encryption: connect without --fingerprint and \
+            --ca-cert, or have it started with --tls-self-signed"
         ),
         (Found::Encrypted, None) => format!(
-            "the daemon at {address} encrypts: give the fingerprint that it told when it started \
-             (--fingerprint), or its certificate (--ca-cert)"
+            "the daemon at {address} uses encryption: give the fingerprint that it printed when \
+            it started (--fingerprint), or its certificate (--ca-cert)"
         ),
         (Found::Plain, _) => {
-            format!("the daemon at {address} broke off the greeting; its log tells why")
+            format!("the daemon at {address} aborted the handshake; its log says why")
         }
         (Found::Other(what), _) => {
-            format!("what answers at {address} is {what}, no daemon; look at the port again")
+            format!("the server at {address} is {what}, not a Lvis daemon; check the port")
         }
         (Found::Closed, _) => format!(
-            "{address} hangs up at once: the daemon may have too many connections, or it is something \
-             else"
+            "{address} closes the connection at once: the daemon may have too many connections, \
+            or it is something else"
         ),
     };
     SessionError::Unreachable(text)
 }
 
-/// Fetches the scene beside a running session.
+/// Fetches the scene while a session is running.
 #[derive(Debug)]
 pub struct SceneFetcher {
     client: Client,

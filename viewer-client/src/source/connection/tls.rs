@@ -20,7 +20,7 @@ use tokio_rustls::rustls::{
 };
 use tonic::transport::{Certificate, Channel, ClientTlsConfig, Endpoint};
 
-use super::error::{Broken, SessionError};
+use super::error::{HandshakeError, SessionError};
 use super::peer::{Peer, Trust};
 
 /// The protocol that gRPC speaks inside TLS.
@@ -30,15 +30,15 @@ const HTTP2: &[u8] = b"h2";
 pub(super) async fn connect(
     peer: &Peer,
     tune: impl FnOnce(Endpoint) -> Endpoint,
-) -> Result<Channel, Broken> {
-    let bad_address = || Broken::Told(SessionError::BadAddress(peer.address.clone()));
+) -> Result<Channel, HandshakeError> {
+    let bad_address = || HandshakeError::Told(SessionError::BadAddress(peer.address.clone()));
     let scheme = if matches!(peer.trust, Trust::Authority(_)) { "https" } else { "http" };
     let endpoint = Endpoint::from_shared(format!("{scheme}://{}", peer.address))
         .map_err(|_invalid| bad_address())?;
     let endpoint = tune(endpoint);
-    let untrusted = |error: &dyn error::Error| Broken::Untrusted(innermost(error));
+    let untrusted = |error: &dyn error::Error| HandshakeError::Untrusted(innermost(error));
     match &peer.trust {
-        Trust::Plain => endpoint.connect().await.map_err(|_unclear| Broken::Off),
+        Trust::Plain => endpoint.connect().await.map_err(|_unclear| HandshakeError::Off),
         Trust::Authority(pem) => {
             let tls = ClientTlsConfig::new().ca_certificate(Certificate::from_pem(pem));
             let endpoint = endpoint.tls_config(tls).map_err(|error| untrusted(&error))?;
@@ -61,7 +61,9 @@ fn innermost(mut error: &dyn error::Error) -> String {
     while let Some(source) = error.source() {
         error = source;
     }
-    error.to_string()
+    let text = error.to_string();
+    // How rustls begins what others have said, such as we ourselves below.
+    text.strip_prefix("unexpected error: ").unwrap_or(&text).to_owned()
 }
 
 async fn dial(
@@ -110,7 +112,7 @@ impl ServerCertVerifier for PinnedCertificate {
         }
         Err(TlsError::General(format!(
             "its certificate has the fingerprint {shown}, not the one you gave. Either the daemon \
-             has a new certificate (ask its owner), or somebody stands between"
+             has a new certificate (ask its owner), or someone is intercepting the connection"
         )))
     }
 

@@ -14,7 +14,7 @@ pub(super) struct Annotation {
     pub(super) configuration: String,
 }
 
-/// Reads what follows the `#`; `None` for a remark that tells of no step.
+/// Reads what follows the `#`; `None` for a comment that does not describe a step.
 pub(super) fn parse(text: &str) -> Result<Option<Annotation>, String> {
     let (text, configuration) = match text.split_once("config=") {
         Some((before, after)) => (before, after.trim()),
@@ -72,7 +72,7 @@ impl<'a> Found<'a> {
             "a" => {
                 let a: f64 = number(key, value)?;
                 if !(0.0..=1.0).contains(&a) {
-                    return Err(format!("`a={value}` is no probability"));
+                    return Err(format!("`a={value}` is not a probability"));
                 }
                 self.acceptance = Some(a);
             }

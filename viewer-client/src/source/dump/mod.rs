@@ -2,12 +2,12 @@
 //!
 //! [`read`] makes a [`Dump`] of such a file: the records in the order of the file, and the steps
 //! of the chains, which the `#` lines of an annotated file tell, rejected ones included.
-//! [`Stage`] brings them into the units and the vocabulary of the viewer.
+//! [`PlayableDump`] brings them into the units and the vocabulary of the viewer.
 
 mod annotation;
 mod parse;
+mod playable;
 mod record;
-mod stage;
 #[cfg(test)]
 pub(crate) mod tests;
 mod text;
@@ -19,7 +19,7 @@ use thiserror::Error;
 
 use common::{Event, Rgb, VertexKind};
 
-pub use stage::{Act, Stage};
+pub use playable::{DumpPath, PlayableDump};
 
 /// No file is larger.
 const LARGEST: u64 = 1 << 31;
@@ -69,13 +69,13 @@ pub struct DumpVertex {
     pub kind: VertexKind,
     /// The lobe that scattered here.
     pub event: Event,
-    /// The shape that it lies on, or what stands there.
+    /// The shape that it lies on, or the text in its place.
     pub shape: String,
     /// How it was made.
     pub numbers: Numbers,
 }
 
-/// What the file tells of making a vertex from its two sides.
+/// What the file says about generating a vertex from either side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Numbers {
     /// By a step from the light side.
@@ -143,7 +143,7 @@ impl Outcome {
 /// One step of a chain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// The line that tells of it.
+    /// The line that describes it.
     pub line: usize,
     /// The chain; 0 where nobody tells it, see [`Outcome::Recorded`].
     pub chain: u32,
@@ -161,7 +161,7 @@ pub struct Step {
     pub record: usize,
 }
 
-/// What the sensor's description tells of the camera, where it tells it.
+/// What the sensor's description says about the camera, if anything.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sensor {
     /// Full fields of view in degrees, horizontal and vertical.

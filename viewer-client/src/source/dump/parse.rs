@@ -10,7 +10,7 @@ use super::{Dump, Fault, Numbers, Outcome, Record, Step};
 
 /// Formal vertices, one at each end.
 const FORMAL: usize = 2;
-/// Faults that are told one by one; the others are counted.
+/// Faults that are reported one by one; the others are counted.
 const MOST_TOLD: usize = 10;
 
 /// What the lines so far have made.
@@ -32,7 +32,7 @@ pub(super) struct Parser {
     foreign: usize,
     /// The first thing that is wrong.
     fault: Option<Fault>,
-    /// Faults beyond those that are told.
+    /// Faults beyond those that are reported.
     more_faults: usize,
 }
 
@@ -61,8 +61,8 @@ impl Parser {
     /// Leaves out the line that is wrong, and the record that it is in.
     fn leave_out(&mut self, begun: Option<usize>, problem: String) {
         let what = match begun {
-            Some(line) => format!("the record that begins in line {line} was left out"),
-            None => "the line was left out".to_owned(),
+            Some(line) => format!("the record that begins at line {line} was skipped"),
+            None => "the line was skipped".to_owned(),
         };
         // Its end has been read when it was found wanting as a whole.
         self.skips = self.open.take().is_some();
@@ -87,7 +87,7 @@ impl Parser {
         let Some(record) = &mut self.open else {
             if let Some(note) = text.strip_prefix('#') {
                 self.skips = false;
-                return self.note(note);
+                return self.annotation(note);
             }
             if self.skips {
                 self.skips = text != "]";
@@ -105,7 +105,7 @@ impl Parser {
             2 if inner.starts_with("Vertex ") => {
                 let expected = format!("Vertex {} => PathVertex[", record.vertices.len());
                 if inner != expected {
-                    return Err(format!("`{expected}` should stand here"));
+                    return Err(format!("expected `{expected}` here"));
                 }
                 if record.vertices.len() == MAX_VERTICES + FORMAL {
                     return Err(format!("no path may have more than {MAX_VERTICES} vertices"));
@@ -124,7 +124,7 @@ impl Parser {
         Ok(())
     }
 
-    fn note(&mut self, text: &str) -> Result<(), String> {
+    fn annotation(&mut self, text: &str) -> Result<(), String> {
         let Some(note) = annotation::parse(text.trim())? else { return Ok(()) };
         self.dump.annotated = true;
         if let Some(chain) = note.chain {
@@ -152,7 +152,7 @@ impl Parser {
     fn close(&mut self, open: OpenRecord) -> Result<(), String> {
         let line = open.line;
         let record =
-            open.close().map_err(|problem| format!("the record of line {line}: {problem}"))?;
+            open.close().map_err(|problem| format!("the record at line {line}: {problem}"))?;
         let index = self.dump.records.len();
         let (note, line) = self.due.take().unwrap_or_else(|| {
             let note = Annotation {
@@ -173,7 +173,7 @@ impl Parser {
 
     fn drop_open(&mut self) {
         if let Some(record) = self.open.take() {
-            let text = format!("the record of line {} has no end and was left out", record.line);
+            let text = format!("the record at line {} is incomplete and was skipped", record.line);
             self.dump.warnings.push(text);
             (self.due, self.is_lost) = (None, true);
         }
@@ -183,19 +183,15 @@ impl Parser {
     pub(super) fn finish(mut self) -> (Dump, Option<Fault>) {
         self.drop_open();
         if self.more_faults > 0 {
-            let text =
-                format!("{} more lines are wrong and were left out likewise", self.more_faults);
+            let text = format!("{} more lines have errors and were skipped, too", self.more_faults);
             self.dump.warnings.push(text);
         }
         if self.lost_steps > 0 {
-            let text = format!(
-                "{} steps from paths that were left out were left out, too",
-                self.lost_steps
-            );
+            let text = format!("{} steps from skipped paths were skipped, too", self.lost_steps);
             self.dump.warnings.push(text);
         }
         if self.foreign > 0 {
-            let text = format!("{} lines outside of records were left out", self.foreign);
+            let text = format!("{} lines outside of records were skipped", self.foreign);
             self.dump.warnings.push(text);
         }
         (self.dump, self.fault)
@@ -223,7 +219,7 @@ impl OpenRecord {
             let before = i.checked_sub(1).and_then(place);
             let vertex = vertex.close(before, place(i + 1), numbers);
             vertices
-                .push(vertex.map_err(|problem| format!("the vertex of line {line}: {problem}"))?);
+                .push(vertex.map_err(|problem| format!("the vertex at line {line}: {problem}"))?);
         }
         let kind = |vertex: Option<&super::DumpVertex>| vertex.map(|v| v.kind);
         let light = kind(vertices.first()) == Some(common::VertexKind::Light);

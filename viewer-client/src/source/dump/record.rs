@@ -86,8 +86,10 @@ impl OpenVertex {
             (4, "degenerate") => self.degenerate = value == "true",
             (4, "measure") => self.discrete = value == "discrete",
             (4, "componentType") => {
-                self.components =
-                    value.parse().ok().ok_or_else(|| format!("`{key} = {value}` is no number"))?;
+                self.components = value
+                    .parse()
+                    .ok()
+                    .ok_or_else(|| format!("`{key} = {value}` is not a number"))?;
             }
             (4, "pdf[importance]") => self.onward.pdf = density(key, value)?,
             (4, "pdf[radiance]") => self.back.pdf = density(key, value)?,

@@ -9,6 +9,7 @@ use glam::DVec3;
 use super::parse::Parser;
 use super::text::Lines;
 use super::*;
+use crate::source::Source;
 
 /// A path from a lamp over a mirror to the camera.
 const RECORD: &str = "\
@@ -139,8 +140,8 @@ fn annotated() -> Dump {
 }
 
 /// A dump of two paths and four steps, ready to be played.
-pub(crate) fn stage() -> Stage {
-    Stage::new(annotated(), None)
+pub(crate) fn playable() -> PlayableDump {
+    PlayableDump::new(annotated(), None)
 }
 
 #[test]
@@ -156,11 +157,11 @@ fn steps_are_told_with_what_was_rejected() {
     ];
     assert_eq!(told, expected, "every step");
     assert!(dump.steps.iter().all(|s| s.chain == 4), "of the chain");
-    let stage = Stage::new(dump, None);
-    let [seed, next] = [&stage.acts[0].header, &stage.acts[1].header];
+    let playable = PlayableDump::new(dump, None);
+    let [seed, next] = [&playable.paths[0].header, &playable.paths[1].header];
     assert_eq!((seed.dwell, seed.weight, next.dwell), (2, 3.0, 0), "how long it stayed");
     assert_eq!((next.id.to_string(), next.acceptance), ("4.0.3".to_owned(), 0.5), "its name");
-    assert_eq!(stage.strategies, ["lens", "bidirectional"], "the mutations");
+    assert_eq!(playable.strategies, ["lens", "bidirectional"], "the mutations");
     assert_eq!(seed.film, [12.5 / 64.0, 30.25 / 48.0], "on the film");
 }
 
@@ -182,8 +183,8 @@ fn with_numbers() -> String {
 }
 
 /// A dump of one path that has densities and weights, and no word on how it came about.
-pub(crate) fn stage_with_numbers() -> Stage {
-    Stage::new(parse(&with_numbers()).expect("a record"), None)
+pub(crate) fn stage_with_numbers() -> PlayableDump {
+    PlayableDump::new(parse(&with_numbers()).expect("a record"), None)
 }
 
 #[test]
@@ -197,8 +198,8 @@ fn densities_and_weights_belong_to_the_vertex_that_a_step_makes() {
     assert_eq!(told, expected, "of the steps before and after; what overflows is not known");
     let lens = vertices[2].numbers.from_light.expect("a step");
     assert_eq!((lens.weight, lens.is_discrete), (Rgb::new(21.0, 2.0, 3.0), true), "off a mirror");
-    let stage = Stage::new(dump, None);
-    let numbers: Vec<_> = stage.acts[0].numbers.iter().map(|n| pdfs(n.from_light)).collect();
+    let playable = PlayableDump::new(dump, None);
+    let numbers: Vec<_> = playable.paths[0].numbers.iter().map(|n| pdfs(n.from_light)).collect();
     assert_eq!(numbers, [Some(0.01), Some(0.11), Some(0.21)], "with the path");
     let plain = parse(RECORD).expect("a record");
     let nothing = plain.records[0].vertices.iter().all(|v| v.numbers == Numbers::default());
@@ -214,9 +215,13 @@ fn records_without_a_word_claim_nothing() {
     let dump = parse(&format!("{RECORD}{RECORD}")).expect("two records");
     let outcomes: Vec<_> = dump.steps.iter().map(|step| step.outcome).collect();
     assert_eq!(outcomes, [Outcome::Recorded; 2], "neither a seed nor accepted");
-    let stage = Stage::new(dump, None);
-    assert!(stage.acts.iter().all(|act| act.outcome == Outcome::Recorded), "{:?}", stage.acts);
-    let lines: Vec<_> = stage.acts.iter().map(|act| act.line).collect();
+    let playable = PlayableDump::new(dump, None);
+    assert!(
+        playable.paths.iter().all(|path| path.outcome == Outcome::Recorded),
+        "{:?}",
+        playable.paths
+    );
+    let lines: Vec<_> = playable.paths.iter().map(|path| path.line).collect();
     assert_eq!(lines, [1, 71], "where they are");
 }
 
@@ -227,11 +232,11 @@ fn the_picture_has_lenses_and_surfaces_that_fit() {
         let positions = vec![[-512.0, -512.0, -512.0], [512.0, 640.0, 512.0]];
         (frame, SceneMesh { positions, ..SceneMesh::default() })
     };
-    let fits = Stage::new(parse(RECORD).expect("a record"), Some(scene(DVec3::Y * 2.0)));
+    let fits = PlayableDump::new(parse(RECORD).expect("a record"), Some(scene(DVec3::Y * 2.0)));
     assert_eq!(fits.warnings, [""; 0], "lamp and mirror lie within");
     let bounds = fits.bounds().expect("a box");
     assert_eq!(bounds.max.x, 1024.0, "the lens lies outside of the surfaces, and is shown");
-    let far = Stage::new(parse(RECORD).expect("a record"), Some(scene(DVec3::splat(90.0))));
+    let far = PlayableDump::new(parse(RECORD).expect("a record"), Some(scene(DVec3::splat(90.0))));
     assert!(far.warnings[0].contains("only 0 of 2"), "{:?}", far.warnings);
     let bounds = far.bounds().expect("a box");
     assert!(bounds.min.x < -20_000.0 && bounds.max.x == 512.0, "both are shown: {bounds:?}");
@@ -246,7 +251,7 @@ fn faults_name_their_line() {
         ("Vertex 2 =>", "Vertex 3 =>", 24, "Vertex 2"),
         ("type = emitterSample", "type = teapot", 70, "`teapot`"),
         ("type = emitterSample", "type = emitterSupernode", 70, "emitterSample"),
-        ("componentType = 32", "componentType = x", 42, "is no number"),
+        ("componentType = 32", "componentType = x", 42, "is not a number"),
         ("Path[", "# step=1 rejected mut=lens\nPath[", 1, "`a=A`"),
         ("Path[", "# step=1 failed mut=lens\nPath[", 1, "begins with a seed"),
         ("Path[", "# seed chain=x step=0\nPath[", 1, "`chain=x`"),
@@ -330,7 +335,19 @@ fn a_file_is_read_in_any_encoding_and_refused_by_its_first_fault() {
 }
 
 #[test]
-#[expect(clippy::print_stderr, reason = "a test that is skipped must say so")]
+fn a_record_that_is_left_out_is_told_and_no_failure() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("paths.txt");
+    let faulty = RECORD.replace("p = [4, 4, 0]", "p = [4, nan, 0]");
+    host::file::write(&file, format!("{RECORD}{faulty}").as_bytes()).expect("writable");
+    let playable = PlayableDump::new(read(&file).expect("one path"), None);
+    let mut source = Source::file("paths.txt", playable);
+    let notice = source.status.notice.as_ref().expect("the user is told");
+    assert!(notice.is_bad && notice.text.contains("was skipped"), "{}", notice.text);
+    assert!(source.status.take_failures().is_empty(), "the file is open all the same");
+}
+
+#[test]
 fn files_of_thousands_of_paths_are_read() {
     let shared =
         std::env::var_os("LVIS_SHARED").map_or_else(|| "../../shared".into(), PathBuf::from);
@@ -341,30 +358,30 @@ fn files_of_thousands_of_paths_are_read() {
     ] {
         let file = shared.join("paths").join(name);
         if !file.exists() {
-            eprintln!("skipped: {} is not there", file.display());
+            ::tests::skip(&format!("{} is not there", file.display()));
             return;
         }
         let dump = read(&file).expect("a dump");
         assert_eq!((dump.records.len(), dump.annotated), (2000, annotated), "{name}");
         assert_eq!(dump.warnings, [""; 0], "{name}");
         assert!(dump.steps.len() >= 2000, "{name}");
-        let stage = Stage::new(dump, None);
-        let (eye, camera) = (stage.camera.origin.as_vec3(), stage.camera);
-        for act in &stage.acts {
+        let playable = PlayableDump::new(dump, None);
+        let (eye, camera) = (playable.camera.origin.as_vec3(), playable.camera);
+        for path in &playable.paths {
             // The film point is where the last inner vertex is seen.
-            let last = glam::Vec3::from(act.vertices[act.vertices.len() - 2].position) - eye;
+            let last = glam::Vec3::from(path.vertices[path.vertices.len() - 2].position) - eye;
             let [x, y, z] =
                 [camera.right, camera.up, camera.forward].map(|a| a.as_vec3().dot(last));
             let seen = [
                 0.5 * (1.0 + x / z / camera.tan_x as f32),
                 0.5 * (1.0 - y / z / camera.tan_y as f32),
             ];
-            let off = (seen[1] - act.header.film[1]).abs();
+            let off = (seen[1] - path.header.film[1]).abs();
             assert!(
                 off < 5e-3,
                 "{name}, path {}: {seen:?} is not {:?}",
-                act.header.id,
-                act.header.film
+                path.header.id,
+                path.header.film
             );
         }
     }

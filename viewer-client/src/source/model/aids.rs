@@ -28,7 +28,7 @@ pub fn drawing_aids(
 ) -> Vec<LinePoint> {
     let mut points = Vec::new();
     if wanted.grid {
-        grid(&mut points, bounds, up);
+        grid(&mut points, bounds, up, GRID_REACH * bounds.radius());
     }
     if let Some(camera) = camera.filter(|_| wanted.camera) {
         camera_model(&mut points, camera, CAMERA_SIZE * bounds.radius());
@@ -63,15 +63,14 @@ fn camera_model(points: &mut Vec<LinePoint>, camera: &Camera, size: f32) {
     polyline(points, CAMERA_UP_COLOR, &roof);
 }
 
-/// A square of lines under the scene.
-fn grid(points: &mut Vec<LinePoint>, bounds: Bounds, up: Vec3) {
+/// A square of lines under the scene, `reach` from its middle to each side.
+fn grid(points: &mut Vec<LinePoint>, bounds: Bounds, up: Vec3, reach: f32) {
     let x = up.any_orthonormal_vector();
     let y = up.cross(x);
     let centre = bounds.centre();
     let lowest = bounds.min.dot(up).min(bounds.max.dot(up));
     // A little below, or the grid and a floor would fight for the same depth.
     let ground = centre + (lowest - 0.004 * bounds.radius() - centre.dot(up)) * up;
-    let reach = GRID_REACH * bounds.radius();
     for i in -GRID_CELLS..=GRID_CELLS {
         let offset = reach * i as f32 / GRID_CELLS as f32;
         polyline(

@@ -11,7 +11,7 @@ pub(crate) fn check_lights(scene: &SceneDescription) -> Result<(), Problem> {
     let skies = scene.lights.iter().enumerate();
     let mut skies = skies.filter(|(_, light)| matches!(light.kind, LightKind::Environment { .. }));
     if let (Some(_), Some((index, _))) = (skies.next(), skies.next()) {
-        let message = "the scene has an environment already; it can have one only";
+        let message = "the scene already has an environment; it can have only one";
         return Err(Problem::new(Part::Light(index), "environment", message));
     }
     let room = usize::from(u16::MAX) - scene.materials.len().min(usize::from(u16::MAX));

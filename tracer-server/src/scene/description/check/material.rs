@@ -23,7 +23,7 @@ pub(super) fn check_texture(texture: &Texture) -> Result<(), Fault> {
     ))
 }
 
-/// Checks all parameters of a material in a scene with so many textures.
+/// Checks all parameters of a material in a scene with this many textures.
 pub(super) fn check_material(material: &Material, textures: usize) -> Result<(), Fault> {
     let mut first = Ok(());
     let mut bsdf = material.bsdf;

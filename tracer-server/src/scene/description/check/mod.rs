@@ -169,8 +169,8 @@ pub(crate) fn check_point(point: DVec3) -> Result<(), String> {
     }
     if point.abs().max_element() > MAX_COORDINATE {
         return Err(format!(
-            "({:e}, {:e}, {:e}) is absurdly far away; coordinates must stay within \
-             {MAX_COORDINATE:e}: use a larger unit",
+            "({:e}, {:e}, {:e}) is too far away; coordinates must stay within {MAX_COORDINATE:e}: \
+            use a larger unit",
             point.x, point.y, point.z
         ));
     }

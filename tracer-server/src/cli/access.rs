@@ -16,17 +16,17 @@ use crate::service::{Access, Certificate, MAX_TOKEN_LENGTH, Security, Token};
 /// No certificate or key is longer, in bytes.
 const MAX_PEM_BYTES: u64 = 1 << 20;
 
-/// Where to listen, and what to ask of whoever connects.
+/// Where to listen, and what to require of those who connect.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Connections")]
-pub struct DoorArgs {
+pub struct AccessArgs {
     /// Where to listen: an address or name of this machine; port 0 takes any that is free.
     ///
     /// Other machines can connect to anything but `localhost`, `127.0.0.1` and `[::1]`; that asks for a
     /// token and for encryption.
     #[arg(long, value_name = "HOST:PORT", default_value_t = DEFAULT_ADDRESS, value_parser = listen)]
     pub listen: SocketAddr,
-    /// File with the token that viewers must show; whoever has it may steer.
+    /// File with the token that viewers must present; anyone who has it may steer.
     #[arg(long, value_name = "FILE")]
     pub token_file: Option<PathBuf>,
     /// File with a second token, for viewers that may only watch.
@@ -49,16 +49,16 @@ pub struct DoorArgs {
     pub insecure: bool,
 }
 
-impl DoorArgs {
-    /// Reads tokens and certificate; refuses to open the door to other machines unguarded.
+impl AccessArgs {
+    /// Reads tokens and certificate; refuses to listen to other machines unprotected.
     pub fn security(&self) -> anyhow::Result<Security> {
         let guarded =
             self.token_file.is_some() && (self.tls_cert.is_some() || self.tls_self_signed);
         ensure!(
             self.insecure || guarded || self.listen.ip().is_loopback(),
-            "--listen {}: other machines could connect there. Ask for a token and encrypt \
-             (--token-file FILE --tls-self-signed), listen on 127.0.0.1, or add --insecure where \
-             everyone on the network is trusted",
+            "--listen {}: other machines could connect. Require a token and encryption \
+            (--token-file FILE --tls-self-signed), listen on 127.0.0.1, or add --insecure if \
+            everyone on the network is trusted",
             self.listen,
         );
         let access = Access {
@@ -67,7 +67,7 @@ impl DoorArgs {
         };
         ensure!(
             access.driver.is_none() || access.driver != access.observer,
-            "--observer-token-file holds the same token as --token-file: observers could steer"
+            "--observer-token-file holds the same token as --token-file, so observers could steer"
         );
         Ok(Security { access, certificate: self.certificate()? })
     }
@@ -111,9 +111,9 @@ fn listen(text: &str) -> Result<SocketAddr, String> {
         format!("write HOST:PORT, such as {DEFAULT_ADDRESS}, localhost:0 or [::1]:50061")
     })?;
     let found = (host, port).to_socket_addrs();
-    let found = found.map_err(|error| format!("no address is known of `{host}`: {error}"))?;
+    let found = found.map_err(|error| format!("`{host}` has no known address: {error}"))?;
     let first = found.min_by_key(SocketAddr::is_ipv6);
-    first.ok_or_else(|| format!("no address is known of `{host}`"))
+    first.ok_or_else(|| format!("`{host}` has no known address"))
 }
 
 fn token(file: &Path) -> anyhow::Result<Token> {
@@ -150,7 +150,7 @@ mod tests {
     #[derive(Debug, Parser)]
     struct Line {
         #[command(flatten)]
-        door: DoorArgs,
+        door: AccessArgs,
     }
 
     fn security(line: &str) -> Result<Security, String> {

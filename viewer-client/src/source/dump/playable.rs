@@ -14,33 +14,33 @@ const USUAL_FOV: f64 = 40.0;
 
 /// One record, ready to be drawn.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Act {
+pub struct DumpPath {
     /// All but the vertices.
     pub header: PathHeader,
     /// From the light to the lens.
     pub vertices: Vec<VertexRecord>,
-    /// How each of them was made, as far as the file tells.
+    /// How each of them was generated, as far as the file says.
     pub numbers: Vec<Numbers>,
-    /// How the path came about. Where nobody tells, name, strategy, acceptance probability and stay
-    /// in the header say nothing.
+    /// How the path came about. If the file does not say, name, strategy, acceptance probability
+    /// and stay in the header are meaningless.
     pub outcome: Outcome,
     /// The line where its record begins.
     pub line: usize,
 }
 
-/// A dump that can be played.
+/// A dump, prepared for playback.
 #[derive(Clone, Debug)]
-pub struct Stage {
+pub struct PlayableDump {
     /// How coordinates relate to those of the file.
     pub frame: SceneFrame,
-    /// The camera that the sensor tells of.
+    /// The camera that the sensor describes.
     pub camera: Camera,
     /// Names of the mutations.
     pub strategies: Vec<String>,
     /// The surfaces, as far as they are known: the places that paths touch.
     pub mesh: SceneMesh,
     /// The records, in the order of the file.
-    pub acts: Vec<Act>,
+    pub paths: Vec<DumpPath>,
     /// The steps, in the order of the file.
     pub steps: Vec<Step>,
     /// The file tells what became of every step.
@@ -58,7 +58,7 @@ const NEAR_LENS: f32 = 8.0;
 /// So much of the surfaces' radius may a path reach beyond them.
 const MARGIN: f32 = 0.02;
 
-impl Stage {
+impl PlayableDump {
     /// Makes a dump ready, in the frame of a scene where one is shown with it.
     pub fn new(mut dump: Dump, scene: Option<(SceneFrame, SceneMesh)>) -> Self {
         let (frame, mesh) =
@@ -75,39 +75,39 @@ impl Stage {
                 strategies.push(step.mutation.clone());
             }
         }
-        let mut stage = Self {
+        let mut playable = Self {
             frame,
             camera,
             strategies,
             mesh,
-            acts: Vec::with_capacity(dump.records.len()),
+            paths: Vec::with_capacity(dump.records.len()),
             steps: dump.steps,
             annotated: dump.annotated,
             warnings,
         };
         for record in &dump.records {
-            let act = stage.act(record);
-            stage.acts.push(act);
+            let path = playable.path(record);
+            playable.paths.push(path);
         }
-        stage.describe_steps();
-        stage
+        playable.describe_steps();
+        playable
     }
 
     /// The box round surfaces and paths, lenses included unless they are far away.
     pub fn bounds(&self) -> Option<Bounds> {
-        let inner = self.acts.iter().flat_map(|act| act.vertices.iter().rev().skip(1));
+        let inner = self.paths.iter().flat_map(|path| path.vertices.iter().rev().skip(1));
         let places = self.mesh.positions.iter().copied().chain(inner.map(|v| v.position));
         let near = |place: &[f32; 3]| place.iter().all(|x| x.abs() <= REACH);
         let body = Bounds::of(&places.filter(near).collect::<Vec<_>>())?;
         let farthest = NEAR_LENS * body.radius();
-        let lenses = self.acts.iter().filter_map(|act| act.vertices.last());
+        let lenses = self.paths.iter().filter_map(|path| path.vertices.last());
         let lenses = lenses
             .map(|lens| Vec3::from(lens.position))
             .filter(|lens| (*lens - body.centre()).length() <= farthest);
         Some(lenses.fold(body, |b, lens| Bounds { min: b.min.min(lens), max: b.max.max(lens) }))
     }
 
-    fn act(&mut self, record: &Record) -> Act {
+    fn path(&mut self, record: &Record) -> DumpPath {
         let [x, y] = record.pixel;
         let film =
             [(x / f64::from(self.camera.width)) as f32, (y / f64::from(self.camera.height)) as f32];
@@ -115,7 +115,7 @@ impl Stage {
         let header = PathHeader { film, luminance: 1.0, rgb: [1.0; 3], ..PathHeader::default() };
         let vertices = record.vertices.iter().map(|vertex| self.vertex(vertex)).collect();
         let numbers = record.vertices.iter().map(|vertex| vertex.numbers).collect();
-        Act { header, vertices, numbers, outcome: Outcome::Recorded, line: record.line }
+        DumpPath { header, vertices, numbers, outcome: Outcome::Recorded, line: record.line }
     }
 
     fn vertex(&mut self, vertex: &DumpVertex) -> VertexRecord {
@@ -150,14 +150,14 @@ impl Stage {
     /// Names the paths by the steps that made them, and counts how long chains stayed.
     fn describe_steps(&mut self) {
         for step in &self.steps {
-            let Some(act) = self.acts.get_mut(step.record) else { continue };
-            let header = &mut act.header;
+            let Some(path) = self.paths.get_mut(step.record) else { continue };
+            let header = &mut path.header;
             if !step.outcome.has_path() {
                 header.dwell = header.dwell.saturating_add(1);
                 header.weight += 1.0;
                 continue;
             }
-            act.outcome = step.outcome;
+            path.outcome = step.outcome;
             header.id = PathId { chain: ChainId(step.chain), epoch: 0, step: step.number };
             header.strategy = strategy(&self.strategies, &step.mutation);
             header.weight += 1.0;
@@ -189,8 +189,8 @@ fn misfit(surfaces: Bounds, records: &[Record], frame: SceneFrame) -> Option<Str
     let (all, within) = (places().count(), places().filter(is_within).count());
     (2 * within < all).then(|| {
         format!(
-            "only {within} of {all} vertices lie within the surfaces: those are of another scene, \
-             or in other units"
+            "only {within} of {all} vertices lie within the bounds of the surfaces, which may \
+            belong to another scene or use other units"
         )
     })
 }
