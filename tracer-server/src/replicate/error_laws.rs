@@ -87,9 +87,10 @@ fn coverage(scene: &Scene) -> Coverage {
     coverage
 }
 
-/// Intervals of 95 % hold so often in the pixels that are declared reliable, and those a fifth shorter are
-/// found out. Where few replicates have rare bright light, as behind glass and coats, so few replicates as
-/// here hold less often than they say.
+/// Intervals of 95 % hold that often in the pixels declared reliable; shorter ones are found out.
+///
+/// Where few replicates carry rare bright light, behind glass and coats, the intervals of as few
+/// replicates as here hold less often than they claim.
 #[test]
 fn intervals_hold_what_they_should() {
     for (name, fixture) in scenes() {
@@ -129,8 +130,9 @@ fn worst_share(image: &Film, reference: &Film) -> f64 {
     errors.iter().copied().fold(0.0, f64::max) / errors.iter().sum::<f64>()
 }
 
-/// No chain stays so long that its dot rules the error of a picture: in sixteen seeds no pixel has half of
-/// it, where a dot with a twentieth of the light would have.
+/// No chain stays so long that its dot dominates the error of a picture.
+///
+/// In sixteen seeds no pixel has half of the error; a dot with a twentieth of the light would.
 #[test]
 fn no_dot_rules_a_picture() {
     for (name, fixture) in [("caustic", caustic()), ("slab", slab_over_floor(true))] {
@@ -204,8 +206,10 @@ fn the_mean_is_right_where_few_samples_have_the_light() {
     assert!(suite.verdict().is_pass(), "{}", suite.verdict());
 }
 
-/// A picture that is to reach a noise has about that noise; where few replicates have rare bright light, a
-/// third more at most, since it ends sooner where none has met it yet.
+/// A picture that stops at a noise has about that noise.
+///
+/// Where few replicates carry rare bright light, it has up to a third more: it stops sooner where none
+/// of them has met that light yet.
 #[test]
 fn a_picture_until_a_noise_has_that_noise() {
     const NOISE: f64 = 0.05;
