@@ -182,6 +182,9 @@ pub struct StrategyReport {
     pub failures: Vec<(String, u64)>,
 }
 
+/// Samples that tell how long seeds take, and are thrown away.
+const PROBE: u64 = 2048;
+
 /// One integrator at work.
 enum Work {
     Mlt(Ensemble),
@@ -258,6 +261,27 @@ pub fn render_until(
 
 impl Work {
     fn new(
+        stop: &Stop,
+        scene: &Scene,
+        settings: &RenderSettings,
+        on_seeding: impl FnMut(u64),
+    ) -> Self {
+        let mut settings = *settings;
+        let has_seeds = matches!(settings.integrator, Integrator::Mlt | Integrator::Pssmlt);
+        if let Budget::Time(limit) = settings.budget
+            && has_seeds
+        {
+            let wanted = settings.ensemble.bootstrap_samples;
+            let begun = Instant::now();
+            settings.ensemble.bootstrap_samples = PROBE.min(wanted);
+            drop(Self::seeded(stop, scene, &settings, |_| ()));
+            settings.ensemble.bootstrap_samples =
+                pace::affordable_samples(limit, PROBE, begun.elapsed()).max(PROBE).min(wanted);
+        }
+        Self::seeded(stop, scene, &settings, on_seeding)
+    }
+
+    fn seeded(
         stop: &Stop,
         scene: &Scene,
         settings: &RenderSettings,

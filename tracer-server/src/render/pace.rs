@@ -17,6 +17,15 @@ const LONGEST: f64 = 0.2;
 /// See [`SHORTEST`].
 const SHARE: f64 = 0.25;
 
+/// Share of a time limit that seeds may take.
+const SEEDING: f64 = 0.2;
+
+/// How many samples for seeds there is time for, where `drawn` of them took so long: that, and nothing
+/// that is in the samples, decides how many there are.
+pub(super) fn affordable_samples(limit: Duration, drawn: u64, took: Duration) -> u64 {
+    (SEEDING * limit.as_secs_f64() / took.as_secs_f64().max(1e-9) * drawn as f64) as u64
+}
+
 /// Cuts a budget into rounds.
 #[derive(Debug)]
 pub(super) struct Pace {
@@ -105,5 +114,21 @@ impl Pace {
     pub(super) fn done(&mut self, amount: u64) {
         self.done += amount;
         self.rounds += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn seeds_take_a_fifth_of_the_time_at_most() {
+        let samples = |limit, took| {
+            let (limit, took) = (Duration::from_millis(limit), Duration::from_millis(took));
+            affordable_samples(limit, 2048, took)
+        };
+        assert_eq!(samples(10_000, 1000), 4096, "two seconds of ten");
+        assert_eq!(samples(100, 1000), 40, "less than were drawn");
+        assert!(samples(1000, 0) > 1 << 30, "what takes no time is free");
     }
 }

@@ -23,18 +23,18 @@ use crate::scene::{LightKind, Scene, Tracer};
 use crate::target::laws::targets;
 use crate::target::{Base, Target};
 
-fn wishes(seed: u64, dial: Dial) -> PlanSettings {
+pub(super) fn settings(seed: u64, dial: Dial) -> PlanSettings {
     PlanSettings { seed, threads: 2, strategies: StrategyOptions::default(), dial }
 }
 
 /// A plan for small pictures, with small pools and short chains.
-fn plan(scene: &Scene, seed: u64, dial: Dial) -> Plan {
-    let plan = prepare(scene, &wishes(seed, dial), &Stop::default());
+pub(super) fn plan(scene: &Scene, seed: u64, dial: Dial) -> Plan {
+    let plan = prepare(scene, &settings(seed, dial), &Stop::default());
     let chains = plan.chains.min(8);
     Plan { parts: 2, pool: plan.pool.min(64), chains, steps: 40, ..plan }
 }
 
-fn made(scene: &Scene, plan: &Plan, selection: &str, threads: usize) -> Picture {
+pub(super) fn made(scene: &Scene, plan: &Plan, selection: &str, threads: usize) -> Picture {
     let mut picture = Picture::new(scene, plan);
     let stop = Stop::default();
     let limits = Limits { deadline: None, stop: &stop, threads };
@@ -371,7 +371,7 @@ fn powers_of_two_of_light_change_no_bit() {
             material.emission = material.emission * factor;
         }
         let scene = fixture.build();
-        let plan = prepare(&scene, &wishes(6, Dial::default()), &Stop::default());
+        let plan = prepare(&scene, &settings(6, Dial::default()), &Stop::default());
         let mut image = made(&scene, &plan, "0..3", 2).image();
         image.scale(scene.radiance_scale());
         image

@@ -13,6 +13,8 @@
 //! nor the range of replicates that is worked on changes a bit of it.
 
 #[cfg(test)]
+mod error_laws;
+#[cfg(test)]
 mod laws;
 mod ledger;
 mod part;
