@@ -3,7 +3,7 @@
 //! A renderer is right when its random numbers have the right distribution, so most of its tests
 //! are hypothesis tests. This library holds the few that are needed and makes them hard to misuse:
 //! NaN never passes, a test without data never passes, and the chance of a false alarm is set for
-//! a whole family of comparisons at once. What cannot be tested at all is [skipped](mod@skip) aloud.
+//! a whole family of comparisons at once. What cannot be tested at all is skipped aloud.
 //!
 //! It knows nothing of light transport and depends on none of the other crates, so that each of
 //! them can use it in its own tests.
