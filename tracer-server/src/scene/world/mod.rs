@@ -183,7 +183,10 @@ impl Scene {
         if let Some(description) = &surface.textured {
             let uv = match triangle {
                 Some(triangle) => self.corners.texcoord(at.primitive, triangle, at.position),
-                None => Some(globe(at.normal)),
+                None => {
+                    let sphere = at.primitive as usize - self.accel.triangles().len();
+                    Some(globe(self.corners.turn(sphere) * at.normal))
+                }
             };
             if let Some(uv) = uv {
                 let painted = description.rebuild(&surface.bsdf, &Painted { maps: &self.maps, uv });
