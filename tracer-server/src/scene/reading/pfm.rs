@@ -1,4 +1,4 @@
-//! Portable float maps, `PF` in colour and `Pf` in grey [Debevec 2001].
+//! Portable float maps, `PF` in colour and `Pf` in grey.
 
 use common::Rgb;
 use host::picture::Picture;
