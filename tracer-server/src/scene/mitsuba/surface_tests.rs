@@ -40,7 +40,8 @@ fn color(scene: &Scene, from: [f64; 3], to: [f64; 3]) -> &'static str {
     let [from, to] = [from, to].map(|point| frame.to_scene(DVec3::from(point)));
     let eye = Anchor { position: from, normal: (to - from).normalize(), primitive: NO_PRIMITIVE };
     let hit = Tracer::new(scene).closest(&eye, (to - from).normalize()).expect("it is met");
-    let local = scene.local(&hit.anchor, scene.material_of(hit.anchor.primitive));
+    let at = Anchor { position: hit.position, normal: hit.normal, primitive: hit.primitive };
+    let local = scene.local(&at, scene.material_of(hit.primitive));
     let color = local.bsdf().preview_color();
     let names = [("red", [1, 0, 0]), ("green", [0, 1, 0]), ("blue", [0, 0, 1]), ("white", [1; 3])];
     let near = |rgb: [i32; 3]| [color.r, color.g, color.b].map(|c| i32::from(c > 0.5)) == rgb;
