@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use common::{
     BatchBuilder, BatchLimits, ChainId, CompiledFilter, Event, Filter, FilterMaterial, FilterScene,
-    PathBatch, PathHeader, PathId, SceneFrame, VertexKind, VertexRecord,
+    Kept, PathBatch, PathHeader, PathId, SceneFrame, VertexKind, VertexRecord,
 };
 use glam::DVec3;
 
@@ -112,7 +112,7 @@ fn paths() -> PathBatch {
         }
         let id = PathId { chain: ChainId(0), epoch: 0, step: step.into() };
         let header = PathHeader { id, weight: 1.0, ..PathHeader::default() };
-        let kept = (!moved).then(|| (path.len() - 3, 1));
+        let kept = (!moved).then(|| Kept { light: path.len() - 3, eye: 1 });
         // The batch has no limit and is completed below.
         drop(builder.push(&header, &path, kept));
     }

@@ -18,9 +18,10 @@ mod session;
 mod steering;
 
 pub use batch::{
-    BatchBuilder, BatchError, BatchLimits, BatchOrigin, Completed, MAX_VERTICES, NORMAL_SCALE,
-    PathBatch, PathColumns, PathHeader, PathReader, PathView, THROUGHPUT_UNKNOWN, VertexColumns,
-    VertexRecord, decode_normal, decode_throughput, encode_normal, encode_throughput,
+    BatchBuilder, BatchError, BatchLimits, BatchOrigin, Completed, Kept, MAX_VERTICES,
+    NORMAL_SCALE, PathBatch, PathColumns, PathHeader, PathReader, PathView, THROUGHPUT_UNKNOWN,
+    VertexColumns, VertexRecord, decode_normal, decode_throughput, encode_normal,
+    encode_throughput,
 };
 pub use camera::{Camera, CameraError, CameraPose};
 pub use color::Rgb;

@@ -61,7 +61,7 @@ fn files_fit_a_head() {
 }
 
 /// Where parameters have names: a tuple among them would hide how many there are.
-const NAMED: [&str; 1] = ["tracer-server"];
+const NAMED: [&str; 4] = ["common", "proto", "tracer-server", "viewer-client"];
 
 /// The functions that take tuples apart, but those of tests.
 fn tuples_taken_apart(files: &[Source]) -> Vec<String> {

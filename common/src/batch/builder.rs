@@ -1,6 +1,6 @@
 //! Collecting paths into batches, as keyframes and diffs.
 
-use super::{PathBatch, PathHeader, THROUGHPUT_UNKNOWN, VertexRecord};
+use super::{Kept, PathBatch, PathHeader, THROUGHPUT_UNKNOWN, VertexRecord};
 
 /// How large a batch may grow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,9 +44,9 @@ impl BatchBuilder {
         &mut self,
         header: &PathHeader,
         vertices: &[VertexRecord],
-        kept: Option<(usize, usize)>,
+        kept: Option<Kept>,
     ) -> Completed {
-        self.push_with(header, (vertices, &[]), kept)
+        self.push_with(header, vertices, &[], kept)
     }
 
     /// Adds a path of vertices with the throughput at each of them, as far as it is known; see
@@ -54,22 +54,21 @@ impl BatchBuilder {
     pub fn push_with(
         &mut self,
         header: &PathHeader,
-        (vertices, throughput): (&[VertexRecord], &[u8]),
-        kept: Option<(usize, usize)>,
+        vertices: &[VertexRecord],
+        throughput: &[u8],
+        kept: Option<Kept>,
     ) -> Completed {
         let completed =
             if self.batch.byte_len() >= self.limits.bytes { self.finish() } else { None };
         let chain = header.id.chain.0;
         let slot = self.last.iter().position(|(known, _)| *known == chain);
-        let (light, eye) = match (slot, kept) {
-            (Some(_), Some(kept)) => kept,
-            _ => (0, 0),
-        };
+        let kept = slot.and(kept).unwrap_or_default();
+        let Kept { light, eye } = kept;
         match slot {
             Some(slot) => self.last[slot].1 = vertices.len(),
             None => self.last.push((chain, vertices.len())),
         }
-        self.push_header(header, (light, eye), vertices.len() - light - eye);
+        self.push_header(header, kept, vertices.len() - light - eye);
         for vertex in &vertices[light..vertices.len() - eye] {
             self.batch.vertices.push(vertex);
         }
@@ -104,14 +103,14 @@ impl BatchBuilder {
         }
     }
 
-    fn push_header(&mut self, header: &PathHeader, kept: (usize, usize), inserted: usize) {
+    fn push_header(&mut self, header: &PathHeader, kept: Kept, inserted: usize) {
         let p = &mut self.batch.paths;
         p.chain.push(header.id.chain.0);
         p.epoch.push(header.id.epoch);
         p.step.push(header.id.step);
         p.strategy.push(header.strategy.0);
-        p.kept_light.push(kept.0 as u8);
-        p.kept_eye.push(kept.1 as u8);
+        p.kept_light.push(kept.light as u8);
+        p.kept_eye.push(kept.eye as u8);
         p.inserted.push(inserted as u8);
         p.dwell.push(header.dwell);
         p.weight.push(header.weight);

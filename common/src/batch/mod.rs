@@ -27,6 +27,15 @@ pub use throughput::{THROUGHPUT_UNKNOWN, decode_throughput, encode_throughput};
 /// No path has more vertices than this.
 pub const MAX_VERTICES: usize = 65;
 
+/// How many vertices two paths have in common at either end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Kept {
+    /// From the light end.
+    pub light: usize,
+    /// From the lens end.
+    pub eye: usize,
+}
+
 /// One vertex as it travels: 24 bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VertexRecord {

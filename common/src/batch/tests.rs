@@ -16,7 +16,7 @@ fn vertex(tag: u32) -> VertexRecord {
     }
 }
 
-type Step = (u32, Vec<VertexRecord>, Option<(usize, usize)>);
+type Step = (u32, Vec<VertexRecord>, Option<Kept>);
 
 /// A chain's history: each step keeps a random prefix and suffix and inserts fresh vertices.
 fn history(steps: &[(u32, usize, usize, usize)]) -> Vec<Step> {
@@ -32,7 +32,7 @@ fn history(steps: &[(u32, usize, usize, usize)]) -> Vec<Step> {
         tag += fresh.len() as u32;
         let end = path.len() - eye;
         path.splice(light..end, fresh);
-        out.push((chain, path.clone(), known.then_some((light, eye))));
+        out.push((chain, path.clone(), known.then_some(Kept { light, eye })));
     }
     out
 }
@@ -51,7 +51,7 @@ proptest! {
             let header = PathHeader { id, ..PathHeader::default() };
             // Some paths come without throughputs, some with too few.
             let known: Vec<u8> = (0..path.len() * (i % 3) / 2).map(|j| (i + j) as u8).collect();
-            batches.extend(builder.push_with(&header, (path, &known), *kept));
+            batches.extend(builder.push_with(&header, path, &known, *kept));
         }
         batches.extend(builder.finish());
         let mut seen = 0;
@@ -88,7 +88,10 @@ fn batch_of_two() -> PathBatch {
     let header = PathHeader::default();
     let path = [vertex(0), vertex(1), vertex(2)];
     assert!(builder.push(&header, &path, None).is_none(), "the batch is far from full");
-    assert!(builder.push(&header, &path, Some((1, 1))).is_none(), "still far from full");
+    assert!(
+        builder.push(&header, &path, Some(Kept { light: 1, eye: 1 })).is_none(),
+        "still far from full"
+    );
     builder.finish().expect("two records")
 }
 

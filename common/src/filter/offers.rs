@@ -25,6 +25,13 @@ pub(super) struct Offer {
     pub(super) rank: Rank,
 }
 
+/// Where an offer would stand, and what is written there already.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Typed<'a> {
+    pub(super) at: usize,
+    pub(super) rest: &'a str,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Rank {
     Usual,
@@ -41,27 +48,28 @@ impl<'a> Offers<'a> {
         Self { scene, found: Vec::new(), open: false }
     }
 
-    fn push(&mut self, (at, rest): (usize, &str), text: String, meaning: &'static str, rank: Rank) {
-        if goes_on(&text, rest) {
+    fn push(&mut self, typed: Typed<'_>, text: String, meaning: &'static str, rank: Rank) {
+        if goes_on(&text, typed.rest) {
+            let at = typed.at;
             let glued = format!(" {text}");
             self.found.push(Offer { at, text, glued, meaning, rank });
         }
     }
 
-    /// A word that may stand at `at`, where `rest` is what is there of it.
-    pub(super) fn word(&mut self, place: (usize, &str), word: &str, meaning: &'static str) {
-        self.push(place, word.to_owned(), meaning, Rank::Usual);
+    /// A word that may stand there.
+    pub(super) fn word(&mut self, typed: Typed<'_>, word: &str, meaning: &'static str) {
+        self.push(typed, word.to_owned(), meaning, Rank::Usual);
     }
 
     /// One of many words.
-    pub(super) fn last(&mut self, place: (usize, &str), word: &Word) {
-        self.push(place, word.text.to_owned(), word.meaning, Rank::Last);
+    pub(super) fn last(&mut self, typed: Typed<'_>, word: &Word) {
+        self.push(typed, word.text.to_owned(), word.meaning, Rank::Last);
     }
 
     /// A sign, with the blanks around it; one without a meaning is not told.
     pub(super) fn sign(
         &mut self,
-        (at, rest): (usize, &str),
+        Typed { at, rest }: Typed<'_>,
         sign: &'static str,
         meaning: &'static str,
     ) {
@@ -75,7 +83,7 @@ impl<'a> Offers<'a> {
     /// The names of a list.
     pub(super) fn names(
         &mut self,
-        (at, rest): (usize, &str),
+        Typed { at, rest }: Typed<'_>,
         list: NameList,
         write: impl Fn(&str) -> String,
     ) {
@@ -110,7 +118,7 @@ impl<'a> Offers<'a> {
         }
         if within.is_whole {
             let at = quoted.outer(quoted.text.len());
-            self.push((at, ""), "\"".to_owned(), "closes", Rank::Last);
+            self.push(Typed { at, rest: "" }, "\"".to_owned(), "closes", Rank::Last);
         }
     }
 }

@@ -6,7 +6,7 @@
 
 use super::FilterScene;
 use super::error::{FilterError, closest};
-use super::offers::{Offers, Within, may_follow};
+use super::offers::{Offers, Typed, Within, may_follow};
 use super::quote::Quoted;
 use super::tree::{MAX_DEPTH, too_deep};
 use super::word::{NameList, Stop, Walk, Word, in_word};
@@ -253,7 +253,7 @@ impl<'a> Reader<'a> {
 
     /// Offers a word that may stand here, if the text ends within it.
     pub(super) fn offer(&mut self, word: &str, meaning: &'static str) {
-        self.with_offers(word, |offers, place| offers.word(place, word, meaning));
+        self.with_offers(word, |offers, typed| offers.word(typed, word, meaning));
     }
 
     /// Offers words, after all others where they are many.
@@ -271,19 +271,19 @@ impl<'a> Reader<'a> {
     /// Offers words after all others.
     pub(super) fn offer_last(&mut self, words: &[Word]) {
         for word in words {
-            self.with_offers(word.text, |offers, place| offers.last(place, word));
+            self.with_offers(word.text, |offers, typed| offers.last(typed, word));
         }
     }
 
     /// Offers a sign with the blanks around it.
     pub(super) fn offer_sign(&mut self, sign: &'static str, meaning: &'static str) {
         self.skip_blanks();
-        self.with_offers(sign.trim(), |offers, place| offers.sign(place, sign, meaning));
+        self.with_offers(sign.trim(), |offers, typed| offers.sign(typed, sign, meaning));
     }
 
     /// Offers the names of the scene as `write` writes them.
     pub(super) fn offer_names(&mut self, list: NameList, write: impl Fn(&str) -> String) {
-        self.with_offers("\"", |offers, place| offers.names(place, list, write));
+        self.with_offers("\"", |offers, typed| offers.names(typed, list, write));
     }
 
     /// Offers what may come within quotes in which the text ends, as `offers` collects it.
@@ -300,16 +300,16 @@ impl<'a> Reader<'a> {
 
     /// Something that cannot be offered may stand here, such as a number.
     pub(super) fn leave_open(&mut self) {
-        self.with_offers("", |offers, (_, rest)| offers.leave_open(rest.is_empty()));
+        self.with_offers("", |offers, typed| offers.leave_open(typed.rest.is_empty()));
     }
 
     /// Calls `offer` with the place and what is there, if somebody collects and `word` may stand here.
-    fn with_offers(&mut self, word: &str, offer: impl FnOnce(&mut Offers<'a>, (usize, &str))) {
+    fn with_offers(&mut self, word: &str, offer: impl FnOnce(&mut Offers<'a>, Typed<'_>)) {
         let (before, rest) = self.text.split_at(self.at);
         if let Some(offers) = &mut self.offers
             && (self.is_expression || may_follow(before, word))
         {
-            offer(offers, (before.len(), rest));
+            offer(offers, Typed { at: before.len(), rest });
         }
     }
 

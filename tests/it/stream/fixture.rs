@@ -202,7 +202,8 @@ pub(crate) fn batch(bytes: usize) -> (PathBatch, Vec<Vec<VertexRecord>>) {
         }
         let id = PathId { chain: ChainId(chain), epoch: 0, step: step.into() };
         let header = PathHeader { id, weight: 1.0, ..PathHeader::default() };
-        let completed = builder.push(&header, current, known.then_some((1, 2)));
+        let completed =
+            builder.push(&header, current, known.then_some(common::Kept { light: 1, eye: 2 }));
         assert!(completed.is_none(), "one batch holds them all");
         paths.push(current.clone());
     }

@@ -1,6 +1,6 @@
 //! Looking over a chain's shoulder: windows of consecutive states, as batches.
 
-use common::{BatchBuilder, BatchLimits, PathBatch, PathHeader, VertexRecord};
+use common::{BatchBuilder, BatchLimits, Kept, PathBatch, PathHeader, VertexRecord};
 
 use super::{Chain, Outcome, Step};
 
@@ -17,7 +17,7 @@ pub struct Watch {
     completed: Vec<PathBatch>,
     seen: u64,
     header: PathHeader,
-    kept: Option<(usize, usize)>,
+    kept: Option<Kept>,
     vertices: Vec<VertexRecord>,
     throughput: Vec<u8>,
 }
@@ -57,7 +57,7 @@ impl Watch {
         match step.outcome {
             Outcome::Accepted { kept_light, kept_eye } => {
                 self.put();
-                self.take(chain, Some((kept_light, kept_eye)));
+                self.take(chain, Some(Kept { light: kept_light, eye: kept_eye }));
                 self.header.dwell = 1;
             }
             Outcome::Failed(_) | Outcome::Rejected => self.header.dwell += 1,
@@ -73,7 +73,7 @@ impl Watch {
         self.completed
     }
 
-    fn take(&mut self, chain: &Chain, kept: Option<(usize, usize)>) {
+    fn take(&mut self, chain: &Chain, kept: Option<Kept>) {
         self.header = chain.header();
         self.kept = kept;
         chain.current().record_into(&mut self.vertices);
@@ -83,8 +83,8 @@ impl Watch {
     fn put(&mut self) {
         self.header.weight = self.header.dwell as f32 * self.decimation;
         // A state that was left at once stands for no step, but the next one is a diff against it.
-        let path = (self.vertices.as_slice(), self.throughput.as_slice());
-        let completed = self.builder.push_with(&self.header, path, self.kept);
+        let completed =
+            self.builder.push_with(&self.header, &self.vertices, &self.throughput, self.kept);
         self.completed.extend(completed);
     }
 }

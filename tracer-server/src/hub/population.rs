@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use common::{
-    BatchBuilder, BatchLimits, BatchOrigin, CompiledFilter, FilterCounts, FilterTally, Gap,
+    BatchBuilder, BatchLimits, BatchOrigin, CompiledFilter, FilterCounts, FilterTally, Gap, Kept,
     PathBatch, PathView, Queue,
 };
 use tokio::time::Instant;
@@ -57,7 +57,7 @@ struct Open {
     sequence: u64,
     since: Option<Instant>,
     /// For each chain, how much a path of it now shares with its last one in the batch.
-    shared: BTreeMap<u32, (usize, usize)>,
+    shared: BTreeMap<u32, Kept>,
 }
 
 /// What the decimation is controlled by.
@@ -304,14 +304,15 @@ impl Open {
         // What two paths share is what every change between them left alone.
         let eye = path.vertices.len() - path.first_new - path.new_count;
         if let Some(shared) = self.shared.get_mut(&chain) {
-            *shared = (shared.0.min(path.first_new), shared.1.min(eye));
+            shared.light = shared.light.min(path.first_new);
+            shared.eye = shared.eye.min(eye);
         }
         let Some(weight) = weight else { return };
         let header = common::PathHeader { weight, ..path.header };
         let kept = self.shared.get(&chain).copied();
-        let full = self.builder.push_with(&header, (path.vertices, path.throughput), kept);
+        let full = self.builder.push_with(&header, path.vertices, path.throughput, kept);
         debug_assert!(full.is_none(), "the batch has no limit of its own");
-        self.shared.insert(chain, (usize::MAX, usize::MAX));
+        self.shared.insert(chain, Kept { light: usize::MAX, eye: usize::MAX });
     }
 
     /// The batch, after which a new one is open.

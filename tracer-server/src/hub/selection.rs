@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use common::{
-    BatchBuilder, BatchLimits, ChainId, Event, Filter, FilterMaterial, FilterScene, PathHeader,
-    PathId, SceneFrame, VertexKind, VertexRecord,
+    BatchBuilder, BatchLimits, ChainId, Event, Filter, FilterMaterial, FilterScene, Kept,
+    PathHeader, PathId, SceneFrame, VertexKind, VertexRecord,
 };
 use proptest::prelude::*;
 
@@ -62,7 +62,7 @@ impl Walk {
             let id = PathId { chain: ChainId(chain as u32), epoch: 0, step: self.step };
             let weight = [0.0, 1.0, 1.0, 3.0, 40.0][self.below(5)];
             let header = PathHeader { id, weight, ..PathHeader::default() };
-            let kept = begun[chain].then_some((light, eye));
+            let kept = begun[chain].then_some(Kept { light, eye });
             begun[chain] = true;
             drop(builder.push(&header, &self.paths[chain], kept));
             published.push((header, self.paths[chain].clone()));

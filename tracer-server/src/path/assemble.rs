@@ -1,7 +1,7 @@
 //! From vertices to a path: splicing, and the computation of every cached value.
 
 use arrayvec::ArrayVec;
-use common::{Rgb, VertexKind};
+use common::{Kept, Rgb, VertexKind};
 use glam::{DVec2, DVec3};
 
 use super::{Edge, Failure, NO_SCATTERING, Path, Vertex, lens_vertex};
@@ -22,15 +22,6 @@ impl Cut {
     pub fn kept(self, vertices: usize) -> Kept {
         Kept { light: self.light, eye: vertices.saturating_sub(self.eye_from) }
     }
-}
-
-/// How many vertices two paths have in common at either end.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Kept {
-    /// From the light end.
-    pub light: usize,
-    /// From the lens end.
-    pub eye: usize,
 }
 
 /// How a path is made of an older one: its ends are kept, what lies between is replaced.

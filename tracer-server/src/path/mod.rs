@@ -18,9 +18,10 @@ mod tape;
 mod vertex;
 mod walk;
 
-pub use assemble::{Cut, Kept, Splice};
+pub use assemble::{Cut, Splice};
 pub use bidirectional::BidirectionalSampler;
 pub use class::ClassKey;
+pub use common::Kept;
 pub use failure::Failure;
 pub use numbers::{Numbers, ROW, STRANDS, Strand};
 pub use resample::{Draft, Range, end_on_light, open_for_connection, resample};

@@ -80,7 +80,13 @@ impl Fixture {
     ) -> Self {
         let material = self.material(bsdf, emission);
         let name = format!("sphere {material}");
-        self.description.spheres.push(Sphere { name, centre: centre.into(), radius, material });
+        self.description.spheres.push(Sphere {
+            name,
+            centre: centre.into(),
+            radius,
+            turn: DMat3::IDENTITY,
+            material,
+        });
         self
     }
 

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use common::Rgb;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DAffine2, DMat3, DVec3, Vec2, Vec3};
 use tracer_server::bsdf::{ColorInput, LambertDescription, MirrorDescription};
 use tracer_server::scene::load::load;
 use tracer_server::scene::{
@@ -46,6 +46,7 @@ pub(crate) fn cornell(side: u32, feature: Option<&str>) -> anyhow::Result<Scene>
     let mut mesh = triangle(material);
     match feature {
         Some("spheres") => description.spheres.push(Sphere {
+            turn: DMat3::IDENTITY,
             name: "hidden".to_owned(),
             centre: INSIDE + DVec3::X * 0.1,
             radius: SIZE,
@@ -87,5 +88,6 @@ fn checks() -> Texture {
         width: 2,
         height: 1,
         texels: Texels::Codes(Arc::new([[20; 3], [230; 3]]), Coding::Srgb),
+        placing: DAffine2::IDENTITY,
     }
 }

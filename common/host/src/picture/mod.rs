@@ -125,7 +125,8 @@ fn gather(size: Vec2<usize>) -> Gathered {
     fits.then(|| (size.0, vec![Rgb::BLACK; size.0 * size.1]))
 }
 
-fn put(gathered: &mut Gathered, Vec2(x, y): Vec2<usize>, rgb: [f32; 3]) {
+fn put(gathered: &mut Gathered, at: Vec2<usize>, rgb: [f32; 3]) {
+    let Vec2(x, y) = at;
     if let Some((width, pixels)) = gathered
         && let Some(pixel) = pixels.get_mut(y * *width + x)
     {

@@ -1,7 +1,7 @@
 //! A digest of a scene's content: the key under which viewers cache its geometry.
 
 use common::Rgb;
-use glam::DVec3;
+use glam::{DAffine2, DMat3, DVec3};
 
 use super::{LightKind, SceneDescription, Texels};
 use crate::bsdf::{BsdfDescription, ColorInput, NumberInput, Value};
@@ -42,12 +42,18 @@ pub(crate) fn digest(description: &SceneDescription) -> String {
                 h.0.update(bytemuck::cast_slice(numbers));
             }
         }
+        if texture.placing != DAffine2::IDENTITY {
+            texture.placing.to_cols_array().into_iter().for_each(|x| h.number(x));
+        }
     }
     for sphere in &description.spheres {
         h.text(&sphere.name);
         h.point(sphere.centre);
         h.number(sphere.radius);
         h.count(usize::from(sphere.material));
+        if sphere.turn != DMat3::IDENTITY {
+            sphere.turn.to_cols_array().into_iter().for_each(|x| h.number(x));
+        }
     }
     for light in &description.lights {
         h.text(&light.name);

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use common::Rgb;
+use glam::DAffine2;
 
 use crate::bsdf::BsdfDescription;
 
@@ -38,6 +39,8 @@ pub struct Texture {
     pub height: u32,
     /// Red, green and blue, row by row from the top.
     pub texels: Texels,
+    /// From the coordinates of a surface to those of the image.
+    pub placing: DAffine2,
 }
 
 /// The values of a texture.
@@ -134,7 +137,7 @@ fn mean_of_codes(texels: &[[u8; 3]], coding: Coding) -> Rgb {
 
 impl std::fmt::Debug for Texture {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { name, width, height, texels } = self;
+        let Self { name, width, height, texels, .. } = self;
         let kind = match texels {
             Texels::Codes(_, coding) => format!("{coding:?}"),
             Texels::Numbers(_) => "numbers".to_owned(),

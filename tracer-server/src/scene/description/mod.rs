@@ -8,7 +8,7 @@ mod light;
 mod material;
 
 use common::{CameraPose, MAX_VERTICES, Rgb};
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DMat3, DVec3, Vec2, Vec3};
 
 use crate::bsdf::{ColorInput, Inputs, NumberInput};
 pub(crate) use hash::digest;
@@ -131,6 +131,9 @@ pub struct Sphere {
     pub centre: DVec3,
     /// Its radius, positive.
     pub radius: f64,
+    /// From directions in the scene to those of its texture, whose poles are at +y and -y: a rotation,
+    /// or a mirrored one.
+    pub turn: DMat3,
     /// Index of the material.
     pub material: u16,
 }

@@ -261,6 +261,12 @@ impl<'a> Element<'a> {
         self.place().warning(format!("{}: {}", name_of(&self.node), message.as_ref()))
     }
 
+    /// True in a scene of version 0, in which some elements mean something else.
+    pub(super) fn is_of_old(&self) -> bool {
+        let version = self.source.document.root_element().attribute("version");
+        version.is_some_and(|version| version.starts_with("0."))
+    }
+
     /// Remembers that it was read.
     pub(super) fn read(self) -> Self {
         self.source.used.borrow_mut().insert(self.index());

@@ -13,6 +13,8 @@ mod palette;
 mod ply;
 mod sensor;
 mod shape;
+#[cfg(test)]
+mod surface_tests;
 mod texture;
 mod transform;
 mod value;
@@ -162,10 +164,21 @@ impl Loader {
                     self.origins.meshes.push(element.place());
                 }
             }
-            Geometry::Sphere { centre, radius, inwards } => {
-                let material = if inwards { self.inside_out(element, material)? } else { material };
-                self.description.spheres.push(Sphere { name, centre, radius, material });
-                self.origins.spheres.push(element.place());
+            Geometry::Sphere { centre, radius, turn, inwards } => {
+                let turned =
+                    if inwards { self.inside_out(element, material)? } else { Some(material) };
+                if let Some(material) = turned {
+                    self.description.spheres.push(Sphere { name, centre, radius, turn, material });
+                    self.origins.spheres.push(element.place());
+                } else {
+                    let message = "its front is its inside, so it becomes a mesh";
+                    self.warnings.push(element.warning(message));
+                    let mut mesh = shape::hollow(centre, radius, turn);
+                    mesh.name = name;
+                    mesh.materials = vec![material; mesh.triangles.len()];
+                    self.description.meshes.push(mesh);
+                    self.origins.meshes.push(element.place());
+                }
             }
         }
         Ok(())
@@ -190,18 +203,19 @@ impl Loader {
         }
     }
 
-    /// The material of a sphere whose front side is its inside.
-    fn inside_out(&mut self, element: Element<'_>, material: u16) -> Result<u16, LoadError> {
+    /// The material of an exact sphere, whose front is its outside, that looks like `material` with the
+    /// inside for its front; `None` where there is none.
+    fn inside_out(
+        &mut self,
+        element: Element<'_>,
+        material: u16,
+    ) -> Result<Option<u16>, LoadError> {
         if let Some(index) = self.palette.inside_out(material, element.place())? {
-            return Ok(index);
+            return Ok(Some(index));
         }
         let opaque = self.palette.materials.get(usize::from(material));
-        if opaque.is_some_and(|m| m.two_sided && m.emission.is_black()) {
-            return Ok(material);
-        }
-        let message = "an opaque sphere must face outwards: remove flip_normals, make its \
-                       material `twosided`, or use a mesh";
-        Err(element.error(message))
+        let same = opaque.is_some_and(|m| m.two_sided && m.emission.is_black());
+        Ok(same.then_some(material))
     }
 
     fn finish(self) -> Read {

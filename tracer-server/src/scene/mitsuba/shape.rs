@@ -29,6 +29,8 @@ pub(super) enum Geometry {
         centre: DVec3,
         /// Its radius.
         radius: f64,
+        /// From directions in the world to those of its texture.
+        turn: DMat3,
         /// True when its front side is its inside.
         inwards: bool,
     },
@@ -159,7 +161,14 @@ fn sphere(
     }
     if let Some(scale) = uniform_scale(to_world) {
         let centre = to_world.transform_point3(centre);
-        shape.geometry = Geometry::Sphere { centre, radius: radius * scale, inwards: flip };
+        let linear = DMat3::from_mat4(*to_world) * (1.0 / scale);
+        // The renderer's poles are at +z and -z.
+        let poles = DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::Y);
+        let turn = poles * linear.transpose();
+        // A mirror turns it inside out from version 1 on.
+        let mirrored = linear.determinant() < 0.0 && !element.is_of_old();
+        let inwards = flip != mirrored;
+        shape.geometry = Geometry::Sphere { centre, radius: radius * scale, turn, inwards };
         return Ok(None);
     }
     let message = "its transform makes it an ellipsoid, which becomes a mesh";
@@ -179,7 +188,26 @@ fn rectangle() -> Mesh {
 /// The cube from (-1, -1, -1) to (1, 1, 1), which faces outwards.
 fn cube() -> Mesh {
     let cuboid = shape::Cuboid { min: DVec3::NEG_ONE, max: DVec3::ONE };
-    flat(cuboid.surface(), Vec::new())
+    // As the renderer lays an image over each face: (0, 1), (1, 1), (1, 0), (0, 0), hanging upside down.
+    let coordinates = |point: DVec3, normal: DVec3| {
+        let [x, y, z] = point.to_array().map(|c| 0.5 + 0.5 * c as f32);
+        match normal.to_array().map(|c| c.round() as i32) {
+            [_, -1, _] => Vec2::new(z, 1.0 - x),
+            [_, 1, _] => Vec2::new(1.0 - x, z),
+            [1, ..] => Vec2::new(y, z),
+            [_, _, 1] => Vec2::new(y, 1.0 - x),
+            [-1, ..] => Vec2::new(y, 1.0 - z),
+            _ => Vec2::new(1.0 - y, 1.0 - x),
+        }
+    };
+    let surface = cuboid.surface();
+    let of_triangle = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|i| surface.positions[i as usize]);
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        [a, b, c].map(|corner| coordinates(corner, normal))
+    };
+    let texcoords = surface.triangles.iter().map(of_triangle).collect();
+    flat(surface, texcoords)
 }
 
 /// The unit disk in the plane z = 0, which faces +z: a fan about its middle.
@@ -191,6 +219,14 @@ fn disk() -> Mesh {
     Mesh {
         positions: std::iter::once(DVec3::ZERO).chain(rim).collect(),
         triangles: (0..SIDES).map(|i| [0, 1 + i, 1 + (i + 1) % SIDES]).collect(),
+        // The radius, and the share of a turn, from the image's other edge.
+        texcoords: (0..SIDES)
+            .map(|i| {
+                let share = |i: f32| 1.0 - i / SIDES as f32;
+                let i = i as f32;
+                [(0.0, i + 0.5), (1.0, i), (1.0, i + 1.0)].map(|(r, i)| Vec2::new(r, share(i)))
+            })
+            .collect(),
         ..Mesh::default()
     }
 }
@@ -219,8 +255,24 @@ fn cylinder(element: Element<'_>) -> Result<Mesh, LoadError> {
         let [n, m] = [i, j].map(|k| out(k).as_vec3());
         mesh.triangles.extend([[i, j, SIDES + j], [i, SIDES + j, SIDES + i]]);
         mesh.normals.extend([[n, m, m], [n, m, n]]);
+        // The share of a turn, and that of the way from p0 to p1.
+        let corner = |i: u32, along: f32| Vec2::new(i as f32 / SIDES as f32, 1.0 - along);
+        let [a, b] = [i, i + 1].map(|i| corner(i, 0.0));
+        let [c, d] = [i, i + 1].map(|i| corner(i, 1.0));
+        mesh.texcoords.extend([[a, b, d], [a, d, c]]);
     }
     Ok(mesh)
+}
+
+/// A sphere of triangles that faces inwards; `turn` leads to the directions of its texture.
+pub(super) fn hollow(centre: DVec3, radius: f64, turn: DMat3) -> Mesh {
+    let mut mesh = ellipsoid(DVec3::ZERO, radius);
+    let poles = DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::Y);
+    let axes = DMat4::from_mat3(turn.transpose() * poles);
+    mesh::transform(&mut mesh, &(DMat4::from_translation(centre) * axes));
+    mesh::face_along_normals(&mut mesh);
+    mesh::flip(&mut mesh);
+    mesh
 }
 
 /// A sphere of triangles with the normals of a sphere, which faces outwards.
@@ -238,22 +290,28 @@ fn ellipsoid(centre: DVec3, radius: f64) -> Mesh {
         positions: normals.iter().map(|&normal| centre + radius * normal).collect(),
         ..Mesh::default()
     };
-    let mut push = |triangle: [u32; 3]| {
+    let mut push = |triangle: [u32; 3], texcoords: [Vec2; 3]| {
         let normal = |i: u32| normals.get(i as usize).map_or(Vec3::Z, |n| n.as_vec3());
         mesh.triangles.push(triangle);
         mesh.normals.push(triangle.map(normal));
+        mesh.texcoords.push(texcoords);
     };
     for ring in 0..RINGS {
         for column in 0..columns {
             let at = |ring: u32, column: u32| ring * columns + column % columns;
             let [a, b] = [at(ring, column), at(ring, column + 1)];
             let [c, d] = [at(ring + 1, column), at(ring + 1, column + 1)];
+            let coordinate = |ring: u32, column: u32| {
+                Vec2::new(column as f32 / columns as f32, 1.0 - ring as f32 / RINGS as f32)
+            };
+            let [ta, tb] = [coordinate(ring, column), coordinate(ring, column + 1)];
+            let [tc, td] = [coordinate(ring + 1, column), coordinate(ring + 1, column + 1)];
             // At the poles one of the two triangles has no area.
             if ring + 1 < RINGS {
-                push([a, c, d]);
+                push([a, c, d], [ta, tc, td]);
             }
             if ring > 0 {
-                push([a, d, b]);
+                push([a, d, b], [ta, td, tb]);
             }
         }
     }

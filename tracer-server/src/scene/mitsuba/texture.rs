@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use common::Rgb;
-use glam::DMat4;
+use glam::{DAffine2, DVec2, Vec4Swizzles as _};
 
 use super::document::Element;
 use crate::bsdf::ColorInput;
@@ -50,12 +50,10 @@ impl Textures {
             element.error("the parameter `filename` is missing: the file with the image")
         })?;
         let raw = element.flag("raw")?;
-        if element.transform("to_uv")? != DMat4::IDENTITY {
-            self.warnings.push(element.warning("the transform to_uv is ignored"));
-        }
+        let placing = placing(element)?;
         let coding = if raw { Coding::Linear } else { Coding::Srgb };
         let texture = match read_texture(&element.file(&name), coding) {
-            Ok(texture) => texture,
+            Ok(texture) => Texture { placing, ..texture },
             Err(message) => {
                 let message = format!("{message}; grey stands for it");
                 self.warnings.push(element.warning(message));
@@ -75,4 +73,18 @@ impl Textures {
         self.warnings.push(element.warning("the checkerboard becomes its mean colour"));
         Ok(((a + b) * 0.5).into())
     }
+}
+
+/// Where the image lies: `to_uv`, or the four numbers that version 0 has for it.
+fn placing(element: Element<'_>) -> Result<DAffine2, LoadError> {
+    let to_uv = element.transform("to_uv")?;
+    let number = |name, absent| Ok::<_, LoadError>(element.number(name)?.unwrap_or(absent));
+    let scale = DVec2::new(number("uscale", 1.0)?, number("vscale", 1.0)?);
+    let offset = DVec2::new(number("uoffset", 0.0)?, number("voffset", 0.0)?);
+    let plane = DAffine2::from_cols(to_uv.x_axis.xy(), to_uv.y_axis.xy(), to_uv.w_axis.xy());
+    let old = DAffine2::from_cols(DVec2::X * scale.x, DVec2::Y * scale.y, offset);
+    // Its images have v pointing down.
+    let over = DAffine2::from_cols(DVec2::X, DVec2::NEG_Y, DVec2::Y);
+    let placed = over * (old * plane) * over;
+    Ok(if old * plane == DAffine2::IDENTITY { DAffine2::IDENTITY } else { placed })
 }

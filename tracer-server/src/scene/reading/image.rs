@@ -4,6 +4,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 use common::Rgb;
+use glam::DAffine2;
 use host::picture::{Picture, read_exr};
 use image::{DynamicImage, ImageFormat, ImageReader, Limits};
 
@@ -48,7 +49,7 @@ pub(crate) fn read_texture(path: &Path, coding: Coding) -> Result<Texture, Strin
         }
     };
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(Texture { name, width, height, texels })
+    Ok(Texture { name, width, height, texels, placing: DAffine2::IDENTITY })
 }
 
 /// Reads the image of an environment: EXR, Radiance HDR and PFM as they are, all others as sRGB.

@@ -10,7 +10,7 @@ mod strategies;
 use std::path::Path;
 
 use common::{CameraPose, Rgb};
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DMat3, DVec3, Vec2, Vec3};
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -341,6 +341,7 @@ impl Read {
         let place = self.place(text, entry);
         let sphere = entry.get_ref();
         self.description.spheres.push(Sphere {
+            turn: DMat3::IDENTITY,
             name: sphere.name.clone(),
             centre: sphere.centre,
             radius: sphere.radius,

@@ -72,6 +72,8 @@ impl Scene {
         let (triangles, mut materials, mut corners) =
             gather_triangles(description, frame, &mut objects, &mut warnings)?;
         let balls = gather_balls(description, frame, &mut objects, &mut materials)?;
+        let visible = description.spheres.iter().filter(|sphere| sphere.radius > 0.0);
+        corners.turn_spheres(visible.map(|sphere| sphere.turn).collect());
         if materials.is_empty() {
             return Err(SceneError::Empty);
         }

@@ -1,6 +1,6 @@
 //! What varies over triangles: shading normals and texture coordinates.
 
-use glam::{DVec2, DVec3, Vec2, Vec3};
+use glam::{DMat3, DVec2, DVec3, Vec2, Vec3};
 
 use super::surface::Triangle;
 use crate::scene::description::Mesh;
@@ -16,6 +16,9 @@ pub(super) struct Corners {
     normals: Vec<[Vec3; 3]>,
     /// Texture coordinates; not finite for a triangle without.
     texcoords: Vec<[Vec2; 3]>,
+    /// For each sphere, from directions in the scene to those of its texture; empty where all are the
+    /// same.
+    turns: Vec<DMat3>,
 }
 
 /// The corners that a flat triangle has.
@@ -51,9 +54,22 @@ impl Corners {
             .filter(|corners| corners.iter().all(|c| c.is_finite()))
     }
 
+    /// Takes in how the textures of the spheres lie.
+    pub(super) fn turn_spheres(&mut self, turns: Vec<DMat3>) {
+        if turns.iter().any(|turn| *turn != DMat3::IDENTITY) {
+            self.turns = turns;
+        }
+    }
+
+    /// From directions in the scene to those of the texture of a sphere.
+    #[inline]
+    pub(super) fn turn(&self, sphere: usize) -> DMat3 {
+        self.turns.get(sphere).copied().unwrap_or(DMat3::IDENTITY)
+    }
+
     /// Forgets the texture coordinates.
     pub(super) fn drop_texcoords(&mut self) {
-        self.texcoords = Vec::new();
+        (self.texcoords, self.turns) = (Vec::new(), Vec::new());
     }
 
     /// True when some triangle is shaded by other normals than its own.

@@ -181,9 +181,11 @@ impl Scene {
         let mut local = Local::flat(Cow::Borrowed(&surface.bsdf), at.normal);
         let triangle = self.accel.triangles().get(at.primitive as usize);
         if let Some(description) = &surface.textured {
-            let uv = match triangle {
-                Some(triangle) => self.corners.texcoord(at.primitive, triangle, at.position),
-                None => Some(globe(at.normal)),
+            let uv = if let Some(triangle) = triangle {
+                self.corners.texcoord(at.primitive, triangle, at.position)
+            } else {
+                let sphere = at.primitive as usize - self.accel.triangles().len();
+                Some(globe(self.corners.turn(sphere) * at.normal))
             };
             if let Some(uv) = uv {
                 let painted = description.rebuild(&surface.bsdf, &Painted { maps: &self.maps, uv });

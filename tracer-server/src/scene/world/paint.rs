@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use common::{Rgb, TexturePreview};
-use glam::DVec2;
+use glam::{DAffine2, DVec2};
 
 use crate::bsdf::{ColorInput, Inputs, NumberInput};
 use crate::scene::description::{Coding, Texels, Texture};
@@ -14,6 +14,8 @@ pub(super) struct Map {
     width: usize,
     height: usize,
     content: Content,
+    /// From a surface's coordinates, where they are not the image's own.
+    placing: Option<DAffine2>,
 }
 
 /// The values of a map.
@@ -37,12 +39,14 @@ impl Map {
             }
             Texels::Numbers(numbers) => Content::Numbers(Arc::clone(numbers)),
         };
-        Self { width: texture.width as usize, height: texture.height as usize, content }
+        let placing = Some(texture.placing).filter(|placing| *placing != DAffine2::IDENTITY);
+        Self { width: texture.width as usize, height: texture.height as usize, content, placing }
     }
 
     /// The colour at a point by bilinear interpolation between the four texels around it; the image
     /// repeats in both directions.
     pub(super) fn at(&self, uv: DVec2) -> Rgb {
+        let uv = self.placing.map_or(uv, |placing| placing.transform_point2(uv));
         let (x, x_next, across) = neighbours(uv.x, self.width);
         let (y, y_next, down) = neighbours(1.0 - uv.y, self.height);
         let row = |y: usize| {
@@ -58,6 +62,12 @@ impl Map {
         let (width, height) = (self.width.div_ceil(side), self.height.div_ceil(side));
         let block = |first: usize, count: usize| first * side..((first + 1) * side).min(count);
         let mean = |(x, y): (usize, usize)| {
+            if self.placing.is_some() {
+                // As it lies on a surface whose coordinates run once from 0 to 1.
+                let at = |i: usize, count: usize| (i as f64 + 0.5) / count as f64;
+                let color = self.at(DVec2::new(at(x, width), 1.0 - at(y, height))) * factor;
+                return [color.r, color.g, color.b].map(Coding::encode_srgb);
+            }
             let (columns, rows) = (block(x, self.width), block(y, self.height));
             let count = columns.len() * rows.len();
             let places = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
@@ -139,6 +149,7 @@ mod tests {
                 vec![[255, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 255]].into(),
                 Coding::Linear,
             ),
+            placing: DAffine2::IDENTITY,
         })
     }
 
@@ -160,6 +171,7 @@ mod tests {
             width: 1030,
             height: 3,
             texels: Texels::Codes(texels.into(), Coding::Linear),
+            placing: DAffine2::IDENTITY,
         });
         let preview = map.preview(Rgb::new(1.0, 0.5, 0.0));
         assert_eq!((preview.width, preview.height, preview.texels.len()), (344, 1, 344), "small");

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use common::{MaterialInfo, Rgb, SceneMesh, TexturePreview};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::surface::Ball;
 use super::{Scene, SurfaceMaterial};
@@ -33,7 +33,8 @@ impl Scene {
         }
         let first_ball = self.accel.triangles().len();
         for (i, ball) in self.accel.balls().iter().enumerate() {
-            self.push_ball(&mut mesh, (first_ball + i) as u32, ball);
+            let turn = self.corners.turn(i);
+            self.push_ball(&mut mesh, (first_ball + i) as u32, ball, turn.transpose());
         }
         if pictures.list.is_empty() {
             mesh.texcoords = Vec::new();
@@ -48,13 +49,13 @@ impl Scene {
         mesh.primitives.push(primitive);
     }
 
-    fn push_ball(&self, mesh: &mut SceneMesh, primitive: u32, ball: &Ball) {
+    fn push_ball(&self, mesh: &mut SceneMesh, primitive: u32, ball: &Ball, axes: DMat3) {
         let first = mesh.positions.len() as u32;
         for ring in 0..=RINGS {
             let (sin, cos) = (PI * f64::from(ring) / f64::from(RINGS)).sin_cos();
             for segment in 0..=SEGMENTS {
                 let (s, c) = (TAU * f64::from(segment) / f64::from(SEGMENTS)).sin_cos();
-                let normal = DVec3::new(sin * c, cos, sin * s);
+                let normal = axes * DVec3::new(sin * c, cos, sin * s);
                 mesh.positions.push((ball.centre + ball.radius * normal).as_vec3().to_array());
                 mesh.normals.push(normal.as_vec3().to_array());
                 // As [`super::globe`] has it, but without its jump behind the ball.
@@ -130,7 +131,7 @@ struct Pictures {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec2;
+    use glam::{DAffine2, Vec2};
 
     use super::*;
     use crate::bsdf::{BsdfDescription, ColorInput, LambertDescription};
@@ -151,6 +152,7 @@ mod tests {
             width: 2,
             height: 1,
             texels: Texels::Codes(vec![[255, 255, 0], [10, 0, 0]].into(), Coding::Srgb),
+            placing: DAffine2::IDENTITY,
         });
         let material = fixture.material(painted, Rgb::BLACK);
         let floor = &mut fixture.description.meshes[2];

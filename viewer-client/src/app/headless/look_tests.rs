@@ -26,7 +26,7 @@ fn batch(paths: &[(PathHeader, f32, f32)]) -> PathBatch {
             primitive: 0,
         });
         let codes = [encode_throughput(*throughput); 3];
-        let full = builder.push_with(header, (&vertices, &codes), None);
+        let full = builder.push_with(header, &vertices, &codes, None);
         assert!(full.is_none(), "the batch has no limit");
     }
     builder.finish().expect("a batch with paths")

@@ -44,7 +44,7 @@ fn batch() -> PathBatch {
             dwell: 1 << (step % 6),
             ..PathHeader::default()
         };
-        let full = builder.push_with(&header, (&vertices, &codes), None);
+        let full = builder.push_with(&header, &vertices, &codes, None);
         assert!(full.is_none(), "the batch has no limit");
     }
     builder.finish().expect("a batch with paths")

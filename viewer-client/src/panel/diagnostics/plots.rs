@@ -37,7 +37,7 @@ fn halves(_: egui_plot::GridInput) -> Vec<GridMark> {
 }
 
 /// Three to six marks at round numbers of seconds.
-fn moments((low, high): (f64, f64)) -> Vec<GridMark> {
+fn moments(low: f64, high: f64) -> Vec<GridMark> {
     let step = [1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0]
         .into_iter()
         .find(|step| (high - low) / step <= 5.0)
@@ -81,7 +81,7 @@ pub(super) fn acceptance(ui: &mut Ui, world: &World<'_>) {
         .include_y(0.0)
         .include_y(1.0)
         .y_grid_spacer(halves)
-        .x_grid_spacer(|input| moments(input.bounds))
+        .x_grid_spacer(|input| moments(input.bounds.0, input.bounds.1))
         .y_axis_formatter(percent)
         .x_axis_formatter(|mark, _| format::duration(mark.value))
         .label_formatter(label)

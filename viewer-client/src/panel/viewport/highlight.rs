@@ -50,12 +50,12 @@ pub(super) fn paint(painter: &Painter, projector: &Projector, world: &World<'_>,
             if pointed == Some(Pointed::Vertex(i)) {
                 painter.circle_stroke(place, 15.0, Stroke::new(2.5, ink));
             }
-            vertex(painter, place, (selection, i), ink);
+            vertex(painter, place, selection, i, ink);
         }
     }
 }
 
-fn vertex(painter: &Painter, place: Pos2, (selection, i): (&Selection, usize), ink: Color32) {
+fn vertex(painter: &Painter, place: Pos2, selection: &Selection, i: usize, ink: Color32) {
     let last = selection.vertices.len().saturating_sub(1);
     let color = match i {
         0 => theme::LIGHT_END,

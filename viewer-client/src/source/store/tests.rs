@@ -1,8 +1,8 @@
 //! The budget holds, the order holds, and nothing is lost unseen.
 
 use common::{
-    BatchBuilder, BatchLimits, ChainId, Event, PathHeader, PathId, THROUGHPUT_UNKNOWN, VertexKind,
-    VertexRecord, encode_throughput,
+    BatchBuilder, BatchLimits, ChainId, Event, Kept, PathHeader, PathId, THROUGHPUT_UNKNOWN,
+    VertexKind, VertexRecord, encode_throughput,
 };
 use shaders::role;
 
@@ -83,8 +83,11 @@ fn what_batches_tell_of_throughputs_is_kept() {
     let path = [vertex(0.0), vertex(1.0), vertex(2.0)];
     let header = PathHeader { acceptance: 0.2, dwell: 9, ..PathHeader::default() };
     let codes = [0.125, 0.5, 1.0].map(encode_throughput);
-    assert!(builder.push_with(&header, (&path, &codes), None).is_none(), "room enough");
-    assert!(builder.push_with(&header, (&path, &[]), Some((1, 1))).is_none(), "room enough");
+    assert!(builder.push_with(&header, &path, &codes, None).is_none(), "room enough");
+    assert!(
+        builder.push_with(&header, &path, &[], Some(Kept { light: 1, eye: 1 })).is_none(),
+        "room enough"
+    );
     let mut store = Store::new(usize::MAX);
     store.append(&builder.finish().expect("two paths"));
     let page = store.pages().next().expect("a page");

@@ -24,7 +24,7 @@ pub(super) fn check_texture(texture: &Texture) -> Result<(), Fault> {
             Texels::Codes(..) | Texels::Numbers(_) => Ok(()),
         };
     }
-    let Texture { name, width, height, texels } = texture;
+    let Texture { name, width, height, texels, .. } = texture;
     let count = texels.len();
     Err(Fault::new(
         "",
